@@ -1,0 +1,112 @@
+//! The driver for a build script: every `.model` file of a folder becomes a Rust module.
+
+use crate::diagnostic::{Diagnostics, SourceFile};
+use crate::{Sources, emit, generate};
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::{env, fs, io};
+
+/// Generates `$OUT_DIR/models.rs` from `models/*.model` and `laws/*.law` of the crate being built.
+///
+/// Mistakes are printed as `cargo::error=` lines and end the build script.
+pub fn run() {
+    if let Err(mistakes) = generate_all() {
+        for line in mistakes.lines() {
+            println!("cargo::error={line}");
+        }
+        std::process::exit(1);
+    }
+}
+
+fn generate_all() -> Result<(), String> {
+    let directory = |name: &str| {
+        env::var_os(name).map(PathBuf::from).ok_or_else(|| format!("{name} is not set: run this from a build script"))
+    };
+    let (root, out) = (directory("CARGO_MANIFEST_DIR")?, directory("OUT_DIR")?);
+    println!("cargo::rerun-if-changed=models");
+    println!("cargo::rerun-if-changed=laws");
+    let laws = read_laws(&root.join("laws")).map_err(|e| e.to_string())?;
+    let (mut index, mut list, mut errors) = (String::new(), String::new(), String::new());
+    let mut names: BTreeMap<String, String> = BTreeMap::new();
+    for path in files(&root.join("models"), "model").map_err(|e| e.to_string())? {
+        let spec = read(&path, &root).map_err(|e| e.to_string())?;
+        let file = spec.path.clone();
+        let (name, title, code) = match generate_module(Sources { spec, laws: laws.clone() }) {
+            Ok(module) => module,
+            Err(mistakes) => {
+                errors += &mistakes.render();
+                continue;
+            }
+        };
+        if let Some(other) = names.insert(name.clone(), file.clone()) {
+            let _ = writeln!(errors, "the model `{name}` stands in {other} and in {file}");
+            continue;
+        }
+        fs::write(out.join(format!("{name}.rs")), code).map_err(|e| e.to_string())?;
+        let _ = writeln!(
+            index,
+            "#[doc = {title:?}]\npub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}"
+        );
+        let _ = writeln!(list, "    Box::new({name}::Generated::new()),");
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let _ = writeln!(
+        index,
+        "/// Every model of this crate.\npub fn models() -> Vec<Box<dyn landau_solver::Model>> {{\n    vec![\n{list}    ]\n}}"
+    );
+    fs::write(out.join("models.rs"), index).map_err(|e| e.to_string())
+}
+
+/// Name, title and Rust module of a spec.
+pub fn generate_module(sources: Sources) -> Result<(String, String, String), Diagnostics> {
+    let (derivation, kernels) = generate(&sources)?;
+    let code = emit::rust::module(&derivation, &kernels);
+    Ok((derivation.model.name.clone(), derivation.model.title.clone(), code))
+}
+
+/// The law files of a folder by name; none where there is no such folder.
+pub fn read_laws(folder: &Path) -> io::Result<BTreeMap<String, SourceFile>> {
+    let mut laws = BTreeMap::new();
+    if !folder.is_dir() {
+        return Ok(laws);
+    }
+    let root = folder.parent().unwrap_or(folder);
+    for path in files(folder, "law")? {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        laws.insert(name, read(&path, root)?);
+    }
+    Ok(laws)
+}
+
+/// A spec with the law files beside it: in `laws/` next to it, or next to its folder.
+pub fn read_sources(path: &Path) -> io::Result<Sources> {
+    let text = fs::read_to_string(path)?;
+    let spec = SourceFile { path: path.display().to_string(), text };
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let mut laws = read_laws(&folder.join("laws"))?;
+    if laws.is_empty() {
+        laws = read_laws(&folder.join("..").join("laws"))?;
+    }
+    Ok(Sources { spec, laws })
+}
+
+fn files(folder: &Path, extension: &str) -> io::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+fn read(path: &Path, root: &Path) -> io::Result<SourceFile> {
+    let text = fs::read_to_string(path)?;
+    let shown = path.strip_prefix(root).unwrap_or(path);
+    Ok(SourceFile { path: shown.display().to_string(), text })
+}

@@ -1,0 +1,227 @@
+//! The adjoint boundary conditions, by linear algebra on the boundary form.
+//!
+//! ⟨Y, L X⟩ − ⟨L† Y, X⟩ = [ Σ (−1)^l ∂^l(c Y) ∂x^a ∂y^(d−1−l) X ] between the ends: a bilinear
+//! form in the values and derivatives of Y and X there. The direct conditions express some of X's
+//! by the others; whatever then multiplies one that is left free must vanish: these are the adjoint
+//! conditions. The base state enters only through its own boundary conditions.
+
+use super::linear::Term;
+use crate::graph::{Graph, Id, Jet, Rational, Variable};
+use num_traits::One;
+use std::collections::BTreeMap;
+
+/// A polynomial in ∂x and |∂x| with base-state coefficients.
+pub type Symbol = BTreeMap<(u8, u8), Id>;
+
+/// A linear combination of jets at one end; jets carry no x-derivatives, the symbols do.
+pub type Combination = BTreeMap<Jet, Symbol>;
+
+fn symbol_add(graph: &mut Graph, into: &mut Symbol, other: &Symbol, factor: &Symbol) {
+    for (&(a, b), &left) in other {
+        for (&(c, d), &right) in factor {
+            let product = graph.mul(left, right);
+            let key = (a + c, b + d);
+            let total = match into.get(&key) {
+                Some(&present) => graph.add(present, product),
+                None => product,
+            };
+            into.insert(key, total);
+        }
+    }
+}
+
+/// Simplifies coefficients at one end and drops those that vanish.
+pub struct Simplifier<'a> {
+    /// Replaces base atoms by what the base's own boundary conditions say of them.
+    pub at_end: &'a mut dyn FnMut(&mut Graph, Id) -> Id,
+}
+
+impl Simplifier<'_> {
+    fn symbol(&mut self, graph: &mut Graph, symbol: Symbol) -> Symbol {
+        let mut simplified = Symbol::new();
+        for (key, id) in symbol {
+            let id = (self.at_end)(graph, id);
+            let id = graph.collect(id);
+            if !graph.vanishes(id) {
+                simplified.insert(key, id);
+            }
+        }
+        simplified
+    }
+
+    pub fn combination(&mut self, graph: &mut Graph, combination: Combination) -> Combination {
+        let mut simplified = Combination::new();
+        for (jet, symbol) in combination {
+            let symbol = self.symbol(graph, symbol);
+            if !symbol.is_empty() {
+                simplified.insert(jet, symbol);
+            }
+        }
+        simplified
+    }
+}
+
+/// A jet without its x-derivatives, and these as a symbol with the coefficient.
+pub fn split(jet: Jet, coefficient: Id) -> (Jet, Symbol) {
+    (Jet { x: 0, absx: 0, ..jet }, Symbol::from([((jet.x, jet.absx), coefficient)]))
+}
+
+/// The entry to eliminate by: no x-derivative in it; the highest y-derivative for choice.
+fn pivot(combination: &Combination) -> Option<(Jet, Id)> {
+    combination
+        .iter()
+        .filter(|(_, symbol)| symbol.len() == 1 && symbol.contains_key(&(0, 0)))
+        .max_by_key(|(jet, _)| (jet.y, std::cmp::Reverse(jet.field)))
+        .map(|(jet, symbol)| (*jet, symbol[&(0, 0)]))
+}
+
+/// Reduced conditions: each says `jet = −Σ symbol · other jets`.
+#[derive(Clone, Default)]
+pub struct Reduced {
+    pub rules: Vec<(Jet, Combination)>,
+}
+
+/// Gaussian elimination. Rows without an admissible pivot come back in `Err`.
+pub fn reduce(
+    graph: &mut Graph,
+    conditions: Vec<Combination>,
+    simplifier: &mut Simplifier,
+) -> Result<Reduced, Combination> {
+    let mut open: Vec<Combination> =
+        conditions.into_iter().map(|c| simplifier.combination(graph, c)).collect();
+    let mut reduced = Reduced::default();
+    loop {
+        open.retain(|c| !c.is_empty());
+        // The shortest condition first: it makes the others shorter.
+        open.sort_by_key(Combination::len);
+        let Some(position) = open.iter().position(|c| pivot(c).is_some()) else { break };
+        let mut row = open.remove(position);
+        let Some((jet, coefficient)) = pivot(&row) else { break };
+        row.remove(&jet);
+        for symbol in row.values_mut() {
+            for id in symbol.values_mut() {
+                *id = graph.divide_terms(*id, coefficient);
+            }
+        }
+        let row = simplifier.combination(graph, row);
+        for other in &mut open {
+            *other = substitute(graph, other, jet, &row);
+            *other = simplifier.combination(graph, std::mem::take(other));
+        }
+        for (_, rule) in &mut reduced.rules {
+            *rule = substitute(graph, rule, jet, &row);
+            *rule = simplifier.combination(graph, std::mem::take(rule));
+        }
+        reduced.rules.push((jet, row));
+    }
+    match open.into_iter().next() {
+        Some(stuck) => Err(stuck),
+        None => {
+            reduced.rules.sort_by_key(|(jet, _)| *jet);
+            Ok(reduced)
+        }
+    }
+}
+
+/// `combination` with `jet` replaced by −`row`.
+fn substitute(graph: &mut Graph, combination: &Combination, jet: Jet, row: &Combination) -> Combination {
+    let mut result = combination.clone();
+    let Some(factor) = result.remove(&jet) else { return result };
+    let minus: Symbol = factor.into_iter().map(|(key, id)| (key, graph.neg(id))).collect();
+    for (other, symbol) in row {
+        symbol_add(graph, result.entry(*other).or_default(), symbol, &minus);
+    }
+    result
+}
+
+/// The boundary form as X-jet → combination of Y-jets, before any condition is used.
+///
+/// Terms with ∂t and a y-derivative have no place here (the conditions would depend on the
+/// eigenvalue); `Err` names the first.
+pub fn boundary_form(graph: &mut Graph, terms: &[Term]) -> Result<BTreeMap<Jet, Combination>, Term> {
+    let mut form: BTreeMap<Jet, Combination> = BTreeMap::new();
+    for term in terms.iter().filter(|t| t.jet.y > 0) {
+        if term.jet.t > 0 {
+            return Err(*term);
+        }
+        for l in 0..term.jet.y {
+            let x_jet = Jet { y: term.jet.y - 1 - l, x: 0, absx: 0, ..term.jet };
+            let mut derivative = term.coefficient;
+            let mut binomial = Rational::one();
+            // (−1)^l ∂^l (c Y) = (−1)^l Σ_r binomial(l, r) c^(r) ∂^(l−r) Y
+            for r in 0..=l {
+                let sign = if l % 2 == 1 { -binomial.clone() } else { binomial.clone() };
+                let y_jet = Jet { field: term.row as u8, t: 0, x: 0, absx: 0, y: l - r };
+                let coefficient = graph.scale(derivative, sign);
+                let unit = Symbol::from([((term.jet.x, term.jet.absx), graph.one())]);
+                let symbol = Symbol::from([((0, 0), coefficient)]);
+                let entry = form.entry(x_jet).or_default().entry(y_jet).or_default();
+                symbol_add(graph, entry, &symbol, &unit);
+                derivative = graph.differentiate(derivative, Variable::AlongBase);
+                binomial = binomial * Rational::from_integer(i64::from(l - r).into())
+                    / Rational::from_integer((i64::from(r) + 1).into());
+            }
+        }
+    }
+    Ok(form)
+}
+
+/// What must vanish for the boundary form to vanish at one end: one combination of Y-jets for each
+/// X-jet that the direct conditions leave free.
+pub fn demands(
+    graph: &mut Graph,
+    form: &BTreeMap<Jet, Combination>,
+    direct: &Reduced,
+    simplifier: &mut Simplifier,
+) -> BTreeMap<Jet, Combination> {
+    let mut demands = form.clone();
+    for (jet, rule) in &direct.rules {
+        let Some(factor) = demands.remove(jet) else { continue };
+        // X-jet = −Σ symbol · others
+        for (other, symbol) in rule {
+            let minus: Symbol = symbol.iter().map(|(k, &id)| (*k, graph.neg(id))).collect();
+            for (y_jet, y_symbol) in &factor {
+                let entry = demands.entry(*other).or_default().entry(*y_jet).or_default();
+                symbol_add(graph, entry, y_symbol, &minus);
+            }
+        }
+    }
+    let demands: Vec<_> = demands.into_iter().collect();
+    demands
+        .into_iter()
+        .map(|(jet, combination)| (jet, simplifier.combination(graph, combination)))
+        .filter(|(_, combination)| !combination.is_empty())
+        .collect()
+}
+
+/// A demand on conj(Y) read as a condition on Y: ∂x changes sign under conjugation.
+pub fn conjugate(graph: &mut Graph, combination: &Combination) -> Combination {
+    let mut result = Combination::new();
+    for (jet, symbol) in combination {
+        let mirrored = symbol.iter().map(|(&(x, absx), &id)| {
+            let id = if x % 2 == 1 { graph.neg(id) } else { id };
+            ((x, absx), id)
+        });
+        result.insert(*jet, mirrored.collect());
+    }
+    result
+}
+
+/// A reduced rule written out as condition: jet + Σ symbol · others = 0.
+pub fn as_condition(graph: &mut Graph, jet: Jet, rule: &Combination) -> Combination {
+    let mut condition = rule.clone();
+    let one = graph.one();
+    condition.insert(jet, Symbol::from([((0, 0), one)]));
+    condition
+}
+
+/// The part of a combination at k = 0.
+pub fn at_zero_wavenumber(combination: &Combination) -> BTreeMap<Jet, Id> {
+    let mut part = BTreeMap::new();
+    for (jet, symbol) in combination {
+        if let Some(&id) = symbol.get(&(0, 0)) {
+            part.insert(*jet, id);
+        }
+    }
+    part
+}

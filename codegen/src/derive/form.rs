@@ -1,0 +1,142 @@
+//! Truncated power series in the perturbation's derivatives.
+//!
+//! A [`Form`] is Σ coefficient(y) · Π jets, each jet a derivative of a perturbation field, the
+//! coefficient an expression in the base state. Degree 0 is the base part, degree 1 linear,
+//! degree 2 and 3 what becomes N2 and N3. Terms beyond the truncation order are dropped as they
+//! arise.
+
+use crate::graph::{Graph, Id, Jet, Operator, Rational, Variable};
+use num_traits::One;
+use std::collections::BTreeMap;
+
+/// A product of jets, sorted.
+pub type Monomial = Vec<Jet>;
+
+#[derive(Clone, Default, Debug)]
+pub struct Form {
+    pub terms: BTreeMap<Monomial, Id>,
+}
+
+impl Form {
+    /// A base-state expression.
+    pub fn constant(graph: &Graph, value: Id) -> Self {
+        let mut form = Form::default();
+        if !graph.is_zero(value) {
+            form.terms.insert(Vec::new(), value);
+        }
+        form
+    }
+
+    /// The part of degree 0.
+    pub fn base(&self, graph: &mut Graph) -> Id {
+        self.terms.get(&Vec::new()).copied().unwrap_or_else(|| graph.zero())
+    }
+
+    /// The terms of one degree.
+    pub fn degree(&self, degree: usize) -> Form {
+        let of_degree = self.terms.iter().filter(|(m, _)| m.len() == degree);
+        Form { terms: of_degree.map(|(m, c)| (m.clone(), *c)).collect() }
+    }
+
+    /// The highest degree met.
+    pub fn highest_degree(&self) -> usize {
+        self.terms.keys().map(Vec::len).max().unwrap_or(0)
+    }
+
+    pub fn accumulate(&mut self, graph: &mut Graph, monomial: Monomial, coefficient: Id) {
+        let total = match self.terms.get(&monomial) {
+            Some(&present) => graph.add(present, coefficient),
+            None => coefficient,
+        };
+        if graph.is_zero(total) {
+            self.terms.remove(&monomial);
+        } else {
+            self.terms.insert(monomial, total);
+        }
+    }
+
+    pub fn add(&mut self, graph: &mut Graph, other: &Form, factor: &Rational) {
+        for (monomial, coefficient) in &other.terms {
+            let scaled = graph.scale(*coefficient, factor.clone());
+            self.accumulate(graph, monomial.clone(), scaled);
+        }
+    }
+
+    /// Each coefficient multiplied by `factor`, the product carried into the terms of sums.
+    pub fn times(&self, graph: &mut Graph, factor: Id) -> Form {
+        let mut product = Form::default();
+        for (monomial, coefficient) in &self.terms {
+            let scaled = graph.mul(*coefficient, factor);
+            product.accumulate(graph, monomial.clone(), scaled);
+        }
+        product
+    }
+
+    /// Coefficients in collected form, those that vanish dropped.
+    pub fn collected(&self, graph: &mut Graph) -> Form {
+        let mut form = Form::default();
+        for (monomial, &coefficient) in &self.terms {
+            let coefficient = graph.collect(coefficient);
+            if !graph.vanishes(coefficient) {
+                form.terms.insert(monomial.clone(), coefficient);
+            }
+        }
+        form
+    }
+
+    /// The product, truncated beyond `order`.
+    pub fn multiply(&self, graph: &mut Graph, other: &Form, order: usize) -> Form {
+        let mut product = Form::default();
+        for (a, x) in &self.terms {
+            for (b, y) in &other.terms {
+                if a.len() + b.len() > order {
+                    continue;
+                }
+                let mut monomial = a.clone();
+                monomial.extend(b);
+                monomial.sort_unstable();
+                let coefficient = graph.mul(*x, *y);
+                product.accumulate(graph, monomial, coefficient);
+            }
+        }
+        product
+    }
+
+    /// ∂x, ∂y, ∂t or |∂x| by the product rule; base coefficients depend on y alone.
+    ///
+    /// |∂x| obeys no product rule and asks for a form that is linear.
+    pub fn differentiate(&self, graph: &mut Graph, operator: Operator) -> Form {
+        let mut derivative = Form::default();
+        for (monomial, coefficient) in &self.terms {
+            for i in 0..monomial.len() {
+                let mut changed = monomial.clone();
+                changed[i] = changed[i].derived(operator);
+                changed.sort_unstable();
+                derivative.accumulate(graph, changed, *coefficient);
+            }
+            if operator == Operator::Dy {
+                let slope = graph.differentiate(*coefficient, Variable::AlongBase);
+                derivative.accumulate(graph, monomial.clone(), slope);
+            }
+        }
+        derivative
+    }
+
+    /// Σ_m taylor[m] · (self without its base part)^m.
+    pub fn compose(&self, graph: &mut Graph, taylor: &[Id]) -> Form {
+        let order = taylor.len() - 1;
+        let mut increment = self.clone();
+        increment.terms.remove(&Vec::new());
+        let one = graph.one();
+        let mut power = Form::constant(graph, one);
+        let mut result = Form::default();
+        for (m, &coefficient) in taylor.iter().enumerate() {
+            if m > 0 {
+                power = power.multiply(graph, &increment, order);
+            }
+            let term = power.times(graph, coefficient);
+            result.add(graph, &term, &Rational::one());
+        }
+        result
+    }
+}

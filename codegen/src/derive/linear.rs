@@ -1,0 +1,76 @@
+//! The linear operator and its adjoint as lists of coefficients.
+//!
+//! L = Σ c(y) ∂x^a |∂x|^b ∂y^d per (row, field); the mass matrix M0 likewise, with one ∂t.
+
+use super::form::Form;
+use crate::graph::{Graph, Id, Jet, Rational, Variable};
+use num_traits::One;
+use std::collections::BTreeMap;
+
+/// coefficient(y) · ∂(jet) in one row; `jet.field` is the column.
+#[derive(Clone, Copy, Debug)]
+pub struct Term {
+    pub row: usize,
+    pub jet: Jet,
+    pub coefficient: Id,
+}
+
+/// From M ∂t X − R = 0 expanded, one form a row: M0 (terms with one ∂t) and L (the others,
+/// moved to the right-hand side).
+pub fn linear_operator(graph: &mut Graph, forms: &[Form]) -> Vec<Term> {
+    let mut terms = Vec::new();
+    for (row, form) in forms.iter().enumerate() {
+        for (monomial, &coefficient) in &form.degree(1).terms {
+            let jet = monomial[0];
+            let coefficient = if jet.t == 0 { graph.neg(coefficient) } else { coefficient };
+            terms.push(Term { row, jet, coefficient });
+        }
+    }
+    terms
+}
+
+/// L† and M0† by integration by parts, without the boundary terms:
+/// ⟨Y, c ∂x^a |∂x|^b ∂y^d X⟩ = ⟨(−1)^(a+d) ∂x^a |∂x|^b ∂y^d (c Y), X⟩ + …
+pub fn adjoint_operator(graph: &mut Graph, terms: &[Term]) -> Vec<Term> {
+    let mut sums: BTreeMap<(usize, Jet), Id> = BTreeMap::new();
+    for term in terms {
+        let order = term.jet.y;
+        let odd = (term.jet.x + order) % 2 == 1;
+        let mut derivative = term.coefficient;
+        let mut binomial = Rational::one();
+        // ∂^d (c Y) = Σ_l binomial(d, l) c^(l) ∂^(d−l) Y
+        for l in 0..=order {
+            let jet = Jet { field: term.row as u8, y: order - l, ..term.jet };
+            let sign = if odd { -binomial.clone() } else { binomial.clone() };
+            let coefficient = graph.scale(derivative, sign);
+            let key = (usize::from(term.jet.field), jet);
+            let total = match sums.get(&key) {
+                Some(&present) => graph.add(present, coefficient),
+                None => coefficient,
+            };
+            sums.insert(key, total);
+            derivative = graph.differentiate(derivative, Variable::AlongBase);
+            binomial = binomial * Rational::from_integer(i64::from(order - l).into())
+                / Rational::from_integer((i64::from(l) + 1).into());
+        }
+    }
+    let mut adjoint = Vec::new();
+    for ((row, jet), coefficient) in sums {
+        let coefficient = graph.collect(coefficient);
+        if !graph.vanishes(coefficient) {
+            adjoint.push(Term { row, jet, coefficient });
+        }
+    }
+    adjoint
+}
+
+/// The highest y-derivative of each of the first `fields` fields in each row; `None` where the
+/// field is absent.
+pub fn orders(terms: &[Term], rows: usize, fields: usize) -> Vec<Vec<Option<u8>>> {
+    let mut table = vec![vec![None; fields]; rows];
+    for term in terms.iter().filter(|t| usize::from(t.jet.field) < fields) {
+        let entry: &mut Option<u8> = &mut table[term.row][usize::from(term.jet.field)];
+        *entry = Some(entry.unwrap_or(0).max(term.jet.y));
+    }
+    table
+}

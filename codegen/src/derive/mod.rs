@@ -1,0 +1,438 @@
+//! Checked model → operators: expansion, L, L† with its boundary conditions, N2, N3.
+//!
+//! Each pass is a function from one type to the next; [`derive`] shows the whole of it.
+
+mod boundary;
+mod case;
+mod closure;
+mod expand;
+mod form;
+mod linear;
+mod open;
+mod pairing;
+mod parity;
+
+pub use boundary::{Combination, Symbol};
+pub use case::{AdjointCondition, BaseCondition, Case, WallCondition};
+pub use closure::CaseClosure;
+pub use expand::base_value;
+pub use form::{Form, Monomial};
+pub use linear::Term;
+pub use open::Opener;
+pub use parity::Parity;
+
+use crate::diagnostic::{Diagnostic, Diagnostics, Location};
+use crate::graph::{Graph, Id, Rational};
+use crate::model::Model;
+use expand::{Expander, Inexpandable};
+use num_traits::One;
+
+/// More cases of structural switches than any model needs.
+const MOST_CASES: usize = 256;
+
+/// A model and what follows from it.
+pub struct Derivation {
+    pub model: Model,
+    pub operators: Operators,
+}
+
+/// Everything that follows from a model by symbolic derivation; laws still opaque.
+pub struct Operators {
+    /// Truncation order of the expansion.
+    pub order: usize,
+    /// M ∂t X − R of each balance, expanded, not divided.
+    pub balances: Vec<Form>,
+    /// What each balance is divided by (1 where the spec says nothing).
+    pub divisors: Vec<Id>,
+    /// L and M0, divided.
+    pub linear: Vec<Term>,
+    /// L† and M0†; rows are fields, `jet.field` is a balance.
+    pub adjoint: Vec<Term>,
+    /// N2, N3, … : `nonlinear[d − 2][row]`, divided, on the right-hand side.
+    pub nonlinear: Vec<Vec<Form>>,
+    /// The field that each balance is collocated with.
+    pub pairing: Vec<usize>,
+    pub parity: Option<Parity>,
+    /// Balances that determine the base state, with the field each is collocated with.
+    pub base: Vec<BaseRow>,
+    /// Fields that the base state is solved for, numbers last.
+    pub solved: Vec<usize>,
+    /// Integral conditions of the base state: integrand and value.
+    pub base_integrals: Vec<(Id, Id)>,
+    /// Switches that change boundary conditions.
+    pub switches: Vec<usize>,
+    /// One for each combination of their choices.
+    pub cases: Vec<Case>,
+    /// Output functionals, expanded.
+    pub outputs: Vec<Form>,
+}
+
+/// A balance restricted to the base state.
+#[derive(Clone, Debug)]
+pub struct BaseRow {
+    pub balance: usize,
+    /// With laws opaque.
+    pub residual: Id,
+    /// The base field it is collocated with; `None` where the whole base is given in closed form
+    /// and the row is there to be checked.
+    pub field: Option<usize>,
+    /// Highest y-derivative of that field.
+    pub order: u8,
+}
+
+/// Derives all operators to the given order.
+///
+/// # Errors
+/// What the form of the model does not allow, with its place in the spec.
+pub fn derive(mut model: Model, order: usize) -> Result<Derivation, Diagnostics> {
+    let mut mistakes = Vec::new();
+    let mut graph = std::mem::take(&mut model.graph);
+    let operators = Deriver::new(&model, &mut graph, order).run(&mut mistakes);
+    model.graph = graph;
+    match operators {
+        Some(operators) if mistakes.is_empty() => Ok(Derivation { model, operators }),
+        _ => Err(Diagnostics { files: model.sources, list: mistakes }),
+    }
+}
+
+/// The passes' common surroundings.
+pub(crate) struct Deriver<'a> {
+    pub model: &'a Model,
+    pub graph: &'a mut Graph,
+    pub order: usize,
+    pub uniform: Vec<bool>,
+    pub dependence: Vec<Vec<bool>>,
+}
+
+impl<'a> Deriver<'a> {
+    fn new(model: &'a Model, graph: &'a mut Graph, order: usize) -> Self {
+        let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
+        let dependence = open::dependence(graph, &model.laws, uniform.len());
+        Deriver { model, graph, order, uniform, dependence }
+    }
+
+    fn run(mut self, mistakes: &mut Vec<Diagnostic>) -> Option<Operators> {
+        let model = self.model;
+        let profiles = self.uniform.iter().filter(|u| !**u).count();
+        if !self.check_counts(profiles, mistakes) {
+            return None;
+        }
+        // expansion
+        let mut balances = Vec::new();
+        for balance in &model.balances {
+            balances.extend(self.expand(balance.residual, &balance.location, mistakes));
+        }
+        if balances.len() < model.balances.len() {
+            return None;
+        }
+        let divisors = self.divisors();
+        let divided: Vec<Form> = balances
+            .iter()
+            .zip(&divisors)
+            .map(|(form, &divisor)| {
+                let inverse = self.graph.pow(divisor, -Rational::one());
+                form.times(self.graph, inverse).collected(self.graph)
+            })
+            .collect();
+        self.check_orders(&divided, mistakes);
+        // operators
+        let linear = linear::linear_operator(self.graph, &divided);
+        let adjoint = linear::adjoint_operator(self.graph, &linear);
+        let nonlinear = (2..=self.order).map(|d| self.nonlinear(&divided, d)).collect();
+        let given: Vec<_> = model.balances.iter().map(|b| b.paired_field).collect();
+        let Some(pairing) = pairing::pair(&linear, balances.len(), profiles, &given) else {
+            let place = model.balances[0].location.clone();
+            let message = "the balances cannot be paired with the fields";
+            mistakes.push(Diagnostic::new(place, message, "one balance for each field"));
+            return None;
+        };
+        self.check_determined(&linear, profiles, mistakes);
+        // base state
+        let (base, solved, base_integrals) = self.base_problem(&balances, mistakes)?;
+        // boundary conditions, adjoint conditions, closures: one set for each case of the switches
+        let switches = self.switches();
+        let mut cases = Vec::new();
+        for choices in self.choices(&switches, mistakes)? {
+            let problem = case::CaseProblem {
+                linear: &linear,
+                adjoint: &adjoint,
+                divisors: &divisors,
+                pairing: &pairing,
+                solved: &solved,
+                switches: &switches,
+                base_conditions: base.conditions,
+            };
+            cases.extend(case::derive(&mut self, problem, choices, mistakes));
+        }
+        closure::check(&self, &cases, mistakes);
+        let walls: Vec<&Form> =
+            cases.iter().flat_map(|c| c.conditions.iter().map(|w| &w.form)).collect();
+        let parity = parity::parity(&balances, &walls, self.uniform.len());
+        let place = Location { file: 0, range: 0..0 };
+        let outputs: Vec<Form> =
+            model.outputs.iter().filter_map(|o| self.expand(o.body, &place, mistakes)).collect();
+        Some(Operators {
+            order: self.order,
+            balances,
+            divisors,
+            linear,
+            adjoint,
+            nonlinear,
+            pairing,
+            parity,
+            base: base.rows,
+            solved,
+            base_integrals,
+            switches,
+            cases,
+            outputs,
+        })
+    }
+
+    /// The expansion of an expression, or a mistake at `place`.
+    pub fn expand(
+        &mut self,
+        id: Id,
+        place: &Location,
+        mistakes: &mut Vec<Diagnostic>,
+    ) -> Option<Form> {
+        let mut expander =
+            Expander::new(self.order, &self.model.base.closed, &self.uniform, &self.dependence);
+        match expander.expand(self.graph, id) {
+            Ok(form) => Some(form),
+            Err(Inexpandable(reason)) => {
+                let message = format!("there is no expansion around the base state: {reason}");
+                let expected = "an expression that is smooth at the base state";
+                mistakes.push(Diagnostic::new(place.clone(), message, expected));
+                None
+            }
+        }
+    }
+
+    /// The base-state value of an expression of the full state.
+    pub fn base_part(&mut self, id: Id) -> Option<Id> {
+        let mut expander =
+            Expander::new(0, &self.model.base.closed, &self.uniform, &self.dependence);
+        let form = expander.expand(self.graph, id).ok()?;
+        Some(form.base(self.graph))
+    }
+
+    fn divisors(&mut self) -> Vec<Id> {
+        let mut divisors = Vec::new();
+        for balance in &self.model.balances {
+            let divisor = balance.divisor.and_then(|d| self.base_part(d));
+            divisors.push(divisor.unwrap_or_else(|| self.graph.one()));
+        }
+        divisors
+    }
+
+    fn nonlinear(&mut self, divided: &[Form], degree: usize) -> Vec<Form> {
+        let minus = -Rational::one();
+        divided
+            .iter()
+            .map(|form| {
+                let mut negated = Form::default();
+                negated.add(self.graph, &form.degree(degree), &minus);
+                negated
+            })
+            .collect()
+    }
+
+    fn check_counts(&self, profiles: usize, mistakes: &mut Vec<Diagnostic>) -> bool {
+        let (balances, fields) = (self.model.balances.len(), profiles);
+        if balances == fields {
+            return true;
+        }
+        let place = match self.model.balances.last() {
+            Some(balance) if balances > fields => balance.location.clone(),
+            _ => self.model.fields.last().map_or(Location { file: 0, range: 0..0 }, |f| f.location.clone()),
+        };
+        let message = format!("{balances} balance(s) for {fields} field(s)");
+        let what = if balances > fields { "a surplus balance" } else { "a field without a balance" };
+        mistakes.push(
+            Diagnostic::new(place, message, "as many balances as fields")
+                .hint(format!("there is {what}")),
+        );
+        false
+    }
+
+    fn check_orders(&self, forms: &[Form], mistakes: &mut Vec<Diagnostic>) {
+        for (form, balance) in forms.iter().zip(&self.model.balances) {
+            let jets = || form.terms.keys().flatten();
+            let place = balance.location.clone();
+            if let Some(jet) = jets().find(|j| j.t > 1) {
+                let name = &self.model.fields[usize::from(jet.field)].name;
+                let message = format!("`{}` holds a second time derivative of `{name}`", balance.name);
+                mistakes.push(
+                    Diagnostic::new(place, message, "balances of first order in time")
+                        .hint("introduce a field for the first time derivative"),
+                );
+            } else if let Some(jet) = jets().find(|j| j.y > 2) {
+                let name = &self.model.fields[usize::from(jet.field)].name;
+                let message = format!("`{}` holds a {}-fold y-derivative of `{name}`", balance.name, jet.y);
+                mistakes.push(
+                    Diagnostic::new(place, message, "y-derivatives of second order at most")
+                        .hint("introduce an auxiliary field for the second derivative"),
+                );
+            } else if self.model.interval.is_none() && jets().any(|j| j.y > 0) {
+                let message = format!("`{}` holds a cross-stream derivative", balance.name);
+                mistakes.push(Diagnostic::new(place, message, "no such derivative, for want of the coordinate"));
+            }
+        }
+    }
+
+    /// Every field must occur linearly in some balance.
+    fn check_determined(&self, linear: &[Term], profiles: usize, mistakes: &mut Vec<Diagnostic>) {
+        for field in 0..profiles {
+            if !linear.iter().any(|t| usize::from(t.jet.field) == field) {
+                let info = &self.model.fields[field];
+                let message = format!("no balance determines the field `{}`", info.name);
+                let expected = "a field that occurs linearly in some balance";
+                mistakes.push(Diagnostic::new(info.location.clone(), message, expected));
+            }
+        }
+        for (row, balance) in self.model.balances.iter().enumerate() {
+            if !linear.iter().any(|t| t.row == row) {
+                let message = format!("the balance `{}` has no linear part", balance.name);
+                let expected = "a balance that is linear in some field to lowest order";
+                mistakes.push(Diagnostic::new(balance.location.clone(), message, expected));
+            }
+        }
+    }
+
+    /// Which balances, conditions and integrals the base state has to obey.
+    fn base_problem(
+        &mut self,
+        balances: &[Form],
+        mistakes: &mut Vec<Diagnostic>,
+    ) -> Option<(BaseRows, Vec<usize>, Vec<(Id, Id)>)> {
+        let model = self.model;
+        let closed = &model.base.closed;
+        let mut opener = Opener::new(&model.laws, closed, &self.uniform);
+        let mut solved: Vec<usize> = (0..closed.len()).filter(|&f| closed[f].is_none()).collect();
+        solved.sort_by_key(|&f| self.uniform[f]);
+        let profiles: Vec<usize> = solved.iter().copied().filter(|&f| !self.uniform[f]).collect();
+        let mut rows = Vec::new();
+        let mut orders = Vec::new();
+        for (balance, form) in balances.iter().enumerate() {
+            let residual = form.base(self.graph);
+            if self.graph.vanishes(residual) {
+                continue;
+            }
+            let opened = opener.at_base(self.graph, residual);
+            if self.graph.vanishes(opened) {
+                continue;
+            }
+            let mut line = vec![None; profiles.len()];
+            for node in self.graph.topological(&[opened]) {
+                if let crate::graph::Node::Base(field, order) = self.graph.node(node)
+                    && let Some(column) = profiles.iter().position(|f| f == field)
+                {
+                    let entry: &mut Option<i64> = &mut line[column];
+                    *entry = Some(entry.unwrap_or(0).max(i64::from(*order)));
+                }
+            }
+            rows.push((balance, residual, opened));
+            orders.push(line);
+        }
+        if profiles.is_empty() {
+            // A closed base that does not satisfy a balance shows when it is evaluated, where a
+            // symbolic test could not see through a root.
+            let integrals = self.base_integrals(&mut Vec::new());
+            let rows = rows.into_iter().map(|(balance, residual, _)| BaseRow { balance, residual, field: None, order: 0 });
+            return Some((BaseRows { rows: rows.collect(), conditions: 0 }, solved, integrals));
+        }
+        let place = model.base.location.clone();
+        if rows.len() != profiles.len() {
+            let names: Vec<_> = profiles.iter().map(|&f| format!("`{}`", model.fields[f].name)).collect();
+            let message = format!(
+                "the base state has {} unknown field(s) ({}) for {} balance(s)",
+                profiles.len(), names.join(", "), rows.len()
+            );
+            let held: Vec<_> = rows.iter().map(|(b, ..)| format!("`{}`", model.balances[*b].name)).collect();
+            mistakes.push(
+                Diagnostic::new(place, message, "as many as there are balances that do not vanish identically")
+                    .hint(format!("balances left in the base state: {}", if held.is_empty() { "none".into() } else { held.join(", ") })),
+            );
+            return None;
+        }
+        let Some((total, pairing)) = pairing::assign(&orders) else {
+            let message = "the base balances cannot be paired with the base fields";
+            mistakes.push(Diagnostic::new(place, message, "one balance for each field that is solved for"));
+            return None;
+        };
+        let uniform_solved = solved.len() - profiles.len();
+        let conditions = total as usize + uniform_solved;
+        let base_rows = rows
+            .into_iter()
+            .enumerate()
+            .map(|(i, (balance, residual, _))| BaseRow {
+                balance,
+                residual,
+                field: Some(profiles[pairing[i]]),
+                order: orders[i][pairing[i]].unwrap_or(0) as u8,
+            })
+            .collect();
+        let integrals = self.base_integrals(mistakes);
+        Some((BaseRows { rows: base_rows, conditions }, solved, integrals))
+    }
+
+    fn base_integrals(&mut self, mistakes: &mut Vec<Diagnostic>) -> Vec<(Id, Id)> {
+        let model = self.model;
+        let mut integrals = Vec::new();
+        let declared = model.base.integrals.iter();
+        let unknowns = model.mean.iter().filter_map(|closure| match closure {
+            crate::model::Closure::Unknown { field, integral } if model.base.closed[*field].is_none() => {
+                Some(integral)
+            }
+            _ => None,
+        });
+        for integral in declared.chain(unknowns) {
+            match self.base_part(integral.integrand) {
+                Some(integrand) => integrals.push((integrand, integral.value)),
+                None => mistakes.push(Diagnostic::new(
+                    integral.location.clone(),
+                    "the integrand has no value in the base state",
+                    "an expression that is smooth at the base state",
+                )),
+            }
+        }
+        integrals
+    }
+
+    /// Switches that guard boundary conditions.
+    fn switches(&self) -> Vec<usize> {
+        let conditions = self.model.boundary.iter().chain(&self.model.base.conditions);
+        let mut switches: Vec<usize> =
+            conditions.flat_map(|c| c.guard.iter().map(|(switch, _)| *switch)).collect();
+        switches.sort_unstable();
+        switches.dedup();
+        switches
+    }
+
+    fn choices(&self, switches: &[usize], mistakes: &mut Vec<Diagnostic>) -> Option<Vec<Vec<usize>>> {
+        let mut all = vec![Vec::new()];
+        for &switch in switches {
+            let count = self.model.parameters[switch].choices.len();
+            all = all
+                .into_iter()
+                .flat_map(|head: Vec<usize>| {
+                    (0..count).map(move |choice| [head.as_slice(), &[choice]].concat())
+                })
+                .collect();
+            if all.len() > MOST_CASES {
+                let place = self.model.parameters[switch].location.clone();
+                let message = "the switches make too many combinations of boundary conditions";
+                mistakes.push(Diagnostic::new(place, message, format!("at most {MOST_CASES}")));
+                return None;
+            }
+        }
+        Some(all)
+    }
+}
+
+struct BaseRows {
+    rows: Vec<BaseRow>,
+    /// How many conditions (at walls and integrals) determine the base state.
+    conditions: usize,
+}

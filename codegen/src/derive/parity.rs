@@ -1,0 +1,67 @@
+//! Is the model its own mirror image under x → −x?
+//!
+//! Signs s_f of the fields and r_i of the balances such that each monomial of each balance keeps its
+//! sign: r_i + Σ s_f + (number of ∂x) = 0 mod 2, a linear system over two elements, derived from the
+//! expanded balances and never declared.
+
+use super::form::Form;
+
+/// `true` is odd: the field (or balance) changes sign in the mirror.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Parity {
+    pub fields: Vec<bool>,
+    pub rows: Vec<bool>,
+}
+
+/// The parity of a model, or `None` where it has no such symmetry.
+///
+/// `forms` are the balances, `walls` the boundary conditions (each with a sign of its own).
+pub fn parity(forms: &[Form], walls: &[&Form], fields: usize) -> Option<Parity> {
+    let unknowns = fields + forms.len() + walls.len();
+    let mut system: Vec<Vec<bool>> = Vec::new();
+    for (row, form) in forms.iter().chain(walls.iter().copied()).enumerate() {
+        for monomial in form.terms.keys().filter(|m| !m.is_empty()) {
+            let mut equation = vec![false; unknowns + 1];
+            equation[fields + row] = true;
+            for jet in monomial {
+                equation[usize::from(jet.field)] ^= true;
+                equation[unknowns] ^= jet.x % 2 == 1;
+            }
+            system.push(equation);
+        }
+    }
+    let signs = solve(system, unknowns)?;
+    Some(Parity {
+        fields: signs[..fields].to_vec(),
+        rows: signs[fields..fields + forms.len()].to_vec(),
+    })
+}
+
+/// Gauss–Jordan over two elements; free unknowns are 0.
+fn solve(mut system: Vec<Vec<bool>>, unknowns: usize) -> Option<Vec<bool>> {
+    let mut pivots = Vec::new();
+    let mut rank = 0;
+    // Later unknowns (balances) are eliminated first, so that free choices fall on fields.
+    for column in (0..unknowns).rev() {
+        let Some(found) = (rank..system.len()).find(|&r| system[r][column]) else { continue };
+        system.swap(rank, found);
+        let row = system[rank].clone();
+        for (r, other) in system.iter_mut().enumerate() {
+            if r != rank && other[column] {
+                for (bit, by) in other.iter_mut().zip(&row) {
+                    *bit ^= by;
+                }
+            }
+        }
+        pivots.push(column);
+        rank += 1;
+    }
+    if system[rank..].iter().any(|row| row[unknowns]) {
+        return None;
+    }
+    let mut values = vec![false; unknowns];
+    for (row, &column) in pivots.iter().enumerate() {
+        values[column] = system[row][unknowns];
+    }
+    Some(values)
+}

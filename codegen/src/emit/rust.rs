@@ -1,0 +1,336 @@
+//! Kernels → Rust source.
+//!
+//! Every kernel is a function of straight-line code; the equations stand in its documentation.
+
+use super::text;
+use crate::derive::Derivation;
+use crate::kernel::{Kernel, ModelKernels, Operation};
+use crate::structure::{KernelId, Literal, ResidualId};
+use proc_macro2::{Ident, TokenStream};
+use quote::{format_ident, quote};
+
+/// The module of one model: a type that implements the solver's `Model` trait.
+pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
+    let structure = model.structure.literal();
+    let mut functions = TokenStream::new();
+    let mut evaluate = TokenStream::new();
+    for (id, kernel) in &model.kernels {
+        let name = kernel_name(*id);
+        let pattern = kernel_pattern(*id);
+        functions.extend(real_function(&name, kernel));
+        evaluate.extend(quote!(s::KernelId::#pattern => #name(point, out),));
+    }
+    let mut forms = TokenStream::new();
+    for (index, rows) in model.forms.iter().enumerate() {
+        let degree = index + 2;
+        for (row, kernel) in rows.iter().enumerate() {
+            let Some(kernel) = kernel else { continue };
+            let balance = &model.structure.balances[row];
+            let name = format_ident!("n{}_{}", degree, identifier(balance));
+            let equation = text::nonlinear_row(derivation, degree, row);
+            functions.extend(form_function(&name, kernel, degree, balance, &equation));
+            let arguments = (0..degree).map(proc_macro2::Literal::usize_unsuffixed);
+            forms.extend(quote!((#degree, #row) => #name(c, #(x[#arguments]),*),));
+        }
+    }
+    let mut residuals = TokenStream::new();
+    for (id, kernel) in &model.residuals {
+        let (name, pattern) = residual_name(*id);
+        functions.extend(residual_function(&name, kernel));
+        residuals.extend(quote!(s::ResidualId::#pattern => match call {
+            s::ResidualCall::Real(x, out) => #name(point, x, out),
+            s::ResidualCall::Complex(x, out) => #name(point, x, out),
+            s::ResidualCall::Dual(x, out) => #name(point, x, out),
+            s::ResidualCall::Series(x, out) => #name(point, x, out),
+        },));
+    }
+    let sources = derivation.model.sources.iter().map(|file| {
+        let (path, text) = (&file.path, &file.text);
+        quote!((#path, #text))
+    });
+    let code = quote! {
+        use landau_solver::model as s;
+        use s::{C64, Number};
+
+        /// The generated operators, for the solver.
+        pub struct Generated {
+            structure: s::Structure,
+        }
+
+        impl Generated {
+            /// The model, ready to be solved.
+            pub fn new() -> Self {
+                Generated { structure: structure() }
+            }
+        }
+
+        impl Default for Generated {
+            fn default() -> Self {
+                Self::new()
+            }
+        }
+
+        impl s::Model for Generated {
+            fn structure(&self) -> &s::Structure {
+                &self.structure
+            }
+
+            fn sources(&self) -> Vec<(String, String)> {
+                SOURCES.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect()
+            }
+
+            fn evaluate(&self, kernel: s::KernelId, point: &[f64], out: &mut [f64]) {
+                match kernel {
+                    #evaluate
+                    _ => out.fill(0.0),
+                }
+            }
+
+            fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64 {
+                match (degree, row) {
+                    #forms
+                    _ => C64::new(0.0, 0.0),
+                }
+            }
+
+            fn residual(&self, residual: s::ResidualId, point: &[f64], call: s::ResidualCall<'_>) {
+                match residual {
+                    #residuals
+                    _ => {}
+                }
+            }
+        }
+
+        /// The spec and its law files, as they were when this module was generated.
+        const SOURCES: &[(&str, &str)] = &[#(#sources),*];
+
+        fn structure() -> s::Structure {
+            #structure
+        }
+
+        #functions
+    };
+    pretty(code)
+}
+
+/// Formats tokens; the emitter only makes valid items.
+fn pretty(code: TokenStream) -> String {
+    match syn::parse2::<syn::File>(code.clone()) {
+        Ok(file) => prettyplease::unparse(&file),
+        Err(_) => code.to_string(),
+    }
+}
+
+/// A name as Rust accepts it.
+fn identifier(name: &str) -> String {
+    let lower = name.to_lowercase();
+    if syn::parse_str::<Ident>(&lower).is_ok() { lower } else { format!("{lower}_") }
+}
+
+fn kernel_name(id: KernelId) -> Ident {
+    match id {
+        KernelId::Interval => format_ident!("interval"),
+        KernelId::Closed => format_ident!("closed_base"),
+        KernelId::Guess => format_ident!("base_guess"),
+        KernelId::Base => format_ident!("base_residual"),
+        KernelId::BaseIntegrals => format_ident!("base_integrals"),
+        KernelId::Automatic => format_ident!("automatic_conditions"),
+        KernelId::BaseConditions(case) => format_ident!("base_conditions_{case}"),
+        KernelId::Linear => format_ident!("linear_coefficients"),
+        KernelId::Adjoint => format_ident!("adjoint_coefficients"),
+        KernelId::Nonlinear => format_ident!("nonlinear_coefficients"),
+        KernelId::Conditions(case) => format_ident!("boundary_conditions_{case}"),
+        KernelId::AdjointConditions(case) => format_ident!("adjoint_conditions_{case}"),
+        KernelId::Closures(case) => format_ident!("closures_{case}"),
+        KernelId::Amplitude => format_ident!("amplitude"),
+        KernelId::Outputs => format_ident!("output_coefficients"),
+    }
+}
+
+fn kernel_pattern(id: KernelId) -> TokenStream {
+    match id {
+        KernelId::BaseConditions(case) => quote!(BaseConditions(#case)),
+        KernelId::Conditions(case) => quote!(Conditions(#case)),
+        KernelId::AdjointConditions(case) => quote!(AdjointConditions(#case)),
+        KernelId::Closures(case) => quote!(Closures(#case)),
+        plain => {
+            let name = format_ident!("{}", format!("{plain:?}"));
+            quote!(#name)
+        }
+    }
+}
+
+fn residual_name(id: ResidualId) -> (Ident, TokenStream) {
+    match id {
+        ResidualId::Balances => (format_ident!("residual_balances"), quote!(Balances)),
+        ResidualId::Conditions(case) => {
+            (format_ident!("residual_conditions_{case}"), quote!(Conditions(#case)))
+        }
+    }
+}
+
+/// `fn name(p, out)`: `p` is the point state.
+fn real_function(name: &Ident, kernel: &Kernel) -> TokenStream {
+    let body = body(kernel);
+    let outputs = outputs(kernel, false);
+    let doc = counts(kernel);
+    let unused = unused_inputs(kernel);
+    quote! {
+        #[doc = #doc]
+        fn #name(p: &[f64], out: &mut [f64]) {
+            #unused
+            #body
+            #outputs
+        }
+    }
+}
+
+/// `fn name(c, x, y, …)`: coefficients, then the jets of each argument.
+fn form_function(
+    name: &Ident,
+    kernel: &Kernel,
+    degree: usize,
+    balance: &str,
+    equation: &str,
+) -> TokenStream {
+    let body = body(kernel);
+    let result = register(kernel.outputs[0]);
+    let arguments = kernel.inputs[1..].iter().map(|array| format_ident!("{}", array.name));
+    let title = format!(
+        " N{degree} of `{balance}` as a symmetric {degree}-linear form; on the diagonal:\n\n ```text\n {equation}\n ```\n\n{}",
+        counts(kernel)
+    );
+    quote! {
+        #[doc = #title]
+        fn #name(c: &[f64], #(#arguments: &[C64]),*) -> C64 {
+            #body
+            #result
+        }
+    }
+}
+
+/// `fn name<T>(p, x, out)`: parameters, then the jets of the full state.
+fn residual_function(name: &Ident, kernel: &Kernel) -> TokenStream {
+    let body = body(kernel);
+    let outputs = outputs(kernel, true);
+    let doc = counts(kernel);
+    let unused = unused_inputs(kernel);
+    quote! {
+        #[doc = #doc]
+        fn #name<T: Number>(p: &[f64], x: &[T], out: &mut [T]) {
+            #unused
+            #body
+            #outputs
+        }
+    }
+}
+
+fn counts(kernel: &Kernel) -> String {
+    format!(" {} operations, {} before sharing.", kernel.shared(), kernel.unshared)
+}
+
+/// Keeps the signature uniform where a kernel reads nothing of an input.
+fn unused_inputs(kernel: &Kernel) -> TokenStream {
+    let read = |array: usize| {
+        kernel.operations.iter().any(|op| matches!(op, Operation::Input(a, _) if *a == array))
+    };
+    let mut tokens = TokenStream::new();
+    for (index, array) in kernel.inputs.iter().enumerate() {
+        if !read(index) {
+            let name = format_ident!("{}", array.name);
+            tokens.extend(quote!(let _ = #name;));
+        }
+    }
+    if kernel.outputs.is_empty() {
+        tokens.extend(quote!(let _ = out;));
+    }
+    tokens
+}
+
+fn register(index: usize) -> Ident {
+    format_ident!("t{index}")
+}
+
+fn outputs(kernel: &Kernel, generic: bool) -> TokenStream {
+    let mut tokens = TokenStream::new();
+    for (index, &value) in kernel.outputs.iter().enumerate() {
+        let index = proc_macro2::Literal::usize_unsuffixed(index);
+        let name = register(value);
+        let value = if generic && kernel.real[value] { quote!(T::from(#name)) } else { quote!(#name) };
+        tokens.extend(quote!(out[#index] = #value;));
+    }
+    tokens
+}
+
+/// Real registers are `f64`; the others are of the kernel's number type, and mixed operations keep
+/// the number type on the left.
+fn body(kernel: &Kernel) -> TokenStream {
+    let mut tokens = TokenStream::new();
+    for (index, operation) in kernel.operations.iter().enumerate() {
+        let name = register(index);
+        let value = expression(kernel, operation);
+        let annotation = matches!(operation, Operation::Constant(_)).then(|| quote!(: f64));
+        tokens.extend(quote!(let #name #annotation = #value;));
+    }
+    tokens
+}
+
+fn expression(kernel: &Kernel, operation: &Operation) -> TokenStream {
+    let real = |r: usize| kernel.real[r];
+    let mixed = |a: usize, b: usize| real(a) && !real(b);
+    match operation {
+        Operation::Constant(value) => value.literal(),
+        Operation::Input(array, position) => {
+            let name = format_ident!("{}", kernel.inputs[*array].name);
+            let position = proc_macro2::Literal::usize_unsuffixed(*position);
+            quote!(#name[#position])
+        }
+        Operation::Add(a, b) => {
+            let (x, y) = if mixed(*a, *b) { (b, a) } else { (a, b) };
+            let (x, y) = (register(*x), register(*y));
+            quote!(#x + #y)
+        }
+        Operation::Subtract(a, b) => {
+            let (x, y) = (register(*a), register(*b));
+            if mixed(*a, *b) { quote!(-#y + #x) } else { quote!(#x - #y) }
+        }
+        Operation::Multiply(a, b) => {
+            let (x, y) = if mixed(*a, *b) { (b, a) } else { (a, b) };
+            let (x, y) = (register(*x), register(*y));
+            quote!(#x * #y)
+        }
+        Operation::Divide(a, b) => {
+            let (x, y) = (register(*a), register(*b));
+            if mixed(*a, *b) { quote!(Number::recip(#y) * #x) } else { quote!(#x / #y) }
+        }
+        Operation::Negate(a) => {
+            let x = register(*a);
+            quote!(-#x)
+        }
+        Operation::Sqrt(a) => {
+            let x = register(*a);
+            quote!(Number::sqrt(#x))
+        }
+        Operation::PowerI(a, exponent) => {
+            let (x, exponent) = (register(*a), proc_macro2::Literal::i32_unsuffixed(*exponent));
+            quote!(Number::powi(#x, #exponent))
+        }
+        Operation::PowerF(a, exponent) => {
+            let (x, exponent) = (register(*a), exponent.literal());
+            quote!(Number::powf(#x, #exponent))
+        }
+        Operation::Call(function, a) => {
+            let (x, name) = (register(*a), format_ident!("{}", function.name()));
+            quote!(Number::#name(#x))
+        }
+        Operation::Select(switch, branches) => {
+            let switch = register(*switch);
+            let whole = branches.iter().all(|&b| real(b));
+            let branches = branches.iter().map(|&b| {
+                let name = register(b);
+                if real(b) && !whole { quote!(T::from(#name)) } else { quote!(#name) }
+            });
+            quote!(s::choose(#switch, &[#(#branches),*]))
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Differentiation and substitution.
+
+use super::{Function, Graph, Id, Jet, Node, Rational};
+use num_traits::One;
+use std::collections::HashMap;
+
+/// What an expression is differentiated with respect to.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Variable {
+    /// The value of a field in the full state (laws follow by their partial derivatives).
+    Field(usize),
+    /// Explicit dependence on the coordinate.
+    Coordinate,
+    /// A derivative of a solved base field; laws must have been opened.
+    Base(usize, u8),
+    /// d/dy along the base state.
+    AlongBase,
+    /// ∂x, ∂y, ∂t of the full state by the chain rule.
+    State(super::Operator),
+    /// A kernel input.
+    Slot(usize, usize),
+}
+
+impl Graph {
+    /// The derivative of `id` with respect to `variable`.
+    pub fn differentiate(&mut self, id: Id, variable: Variable) -> Id {
+        self.differentiate_memo(id, variable, &mut HashMap::new())
+    }
+
+    fn differentiate_memo(&mut self, id: Id, by: Variable, memo: &mut HashMap<Id, Id>) -> Id {
+        if let Some(&known) = memo.get(&id) {
+            return known;
+        }
+        let result = match self.node(id).clone() {
+            Node::Sum(_, terms) => {
+                let parts: Vec<_> = terms
+                    .into_iter()
+                    .map(|(t, c)| (self.differentiate_memo(t, by, memo), c))
+                    .collect();
+                self.sum(parts)
+            }
+            // (Π b^e)' = Σ e b^(e−1) b' Π others
+            Node::Product(factors) => {
+                let mut parts = Vec::new();
+                for (i, (base, exponent)) in factors.iter().enumerate() {
+                    let inner = self.differentiate_memo(*base, by, memo);
+                    if self.is_zero(inner) {
+                        continue;
+                    }
+                    let mut rest = factors.clone();
+                    rest[i].1 -= Rational::one();
+                    rest.push((inner, Rational::one()));
+                    parts.push((self.product(rest), exponent.clone()));
+                }
+                self.sum(parts)
+            }
+            Node::Call(function, argument) => {
+                let inner = self.differentiate_memo(argument, by, memo);
+                let outer = self.function_derivative(function, argument);
+                self.mul(outer, inner)
+            }
+            Node::Select(switch, branches) => {
+                let branches =
+                    branches.into_iter().map(|b| self.differentiate_memo(b, by, memo)).collect();
+                self.select(switch, branches)
+            }
+            leaf => self.differentiate_leaf(&leaf, by),
+        };
+        memo.insert(id, result);
+        result
+    }
+
+    fn differentiate_leaf(&mut self, leaf: &Node, by: Variable) -> Id {
+        match (leaf, by) {
+            (Node::Coordinate, Variable::Coordinate | Variable::AlongBase) => self.one(),
+            (Node::Coordinate, Variable::State(super::Operator::Dy)) => self.one(),
+            (Node::Jet(jet), Variable::Field(field)) if *jet == Jet::value(field) => self.one(),
+            (Node::Jet(jet), Variable::State(operator)) => self.jet(jet.derived(operator)),
+            (Node::StateLaw(atom), Variable::Field(field)) => self.state_law(atom.partial(field)),
+            (Node::StateLaw(atom), Variable::Coordinate) => self.state_law(atom.dy()),
+            // ∂q law = Σ_f law_f ∂q f (+ explicit y)
+            (Node::StateLaw(atom), Variable::State(operator)) => {
+                let mut parts = Vec::new();
+                for field in 0..atom.index.len() {
+                    let partial = self.state_law(atom.partial(field));
+                    let jet = self.jet(Jet::value(field).derived(operator));
+                    parts.push((self.mul(partial, jet), Rational::one()));
+                }
+                if operator == super::Operator::Dy {
+                    parts.push((self.state_law(atom.dy()), Rational::one()));
+                }
+                self.sum(parts)
+            }
+            (Node::Base(field, order), Variable::AlongBase) => self.base(*field, order + 1),
+            (Node::Base(field, order), Variable::Base(f, o)) if (*field, *order) == (f, o) => {
+                self.one()
+            }
+            (Node::BaseLaw(atom), Variable::AlongBase) => self.base_law(atom.dy()),
+            (Node::Slot(a, p), Variable::Slot(array, position)) if (*a, *p) == (array, position) => {
+                self.one()
+            }
+            _ => self.zero(),
+        }
+    }
+
+    /// f'(argument) of an elementary function.
+    fn function_derivative(&mut self, function: Function, argument: Id) -> Id {
+        let two = Rational::from_integer(2.into());
+        match function {
+            Function::Exp => self.call(Function::Exp, argument),
+            Function::Log => self.pow(argument, -Rational::one()),
+            Function::Sin => self.call(Function::Cos, argument),
+            Function::Cos => {
+                let sine = self.call(Function::Sin, argument);
+                self.neg(sine)
+            }
+            // tan' = 1 + tan²
+            Function::Tan => {
+                let tangent = self.call(Function::Tan, argument);
+                let square = self.pow(tangent, two);
+                let one = self.one();
+                self.add(one, square)
+            }
+            Function::Sinh => self.call(Function::Cosh, argument),
+            Function::Cosh => self.call(Function::Sinh, argument),
+            // tanh' = 1 − tanh²
+            Function::Tanh => {
+                let tangent = self.call(Function::Tanh, argument);
+                let square = self.pow(tangent, two);
+                let one = self.one();
+                self.sub(one, square)
+            }
+            // atan' = 1 / (1 + z²)
+            Function::Atan => {
+                let square = self.pow(argument, two);
+                let one = self.one();
+                let denominator = self.add(one, square);
+                self.pow(denominator, -Rational::one())
+            }
+        }
+    }
+
+    /// Rebuilds `id` with leaves (and unevaluated derivatives) replaced where `replace` says so.
+    pub fn substitute(
+        &mut self,
+        id: Id,
+        replace: &mut dyn FnMut(&mut Graph, &Node) -> Option<Id>,
+    ) -> Id {
+        self.substitute_memo(id, replace, &mut HashMap::new())
+    }
+
+    fn substitute_memo(
+        &mut self,
+        id: Id,
+        replace: &mut dyn FnMut(&mut Graph, &Node) -> Option<Id>,
+        memo: &mut HashMap<Id, Id>,
+    ) -> Id {
+        if let Some(&known) = memo.get(&id) {
+            return known;
+        }
+        let node = self.node(id).clone();
+        let result = if let Some(new) = replace(self, &node) {
+            new
+        } else {
+            match node {
+                Node::Sum(constant, terms) => {
+                    let mut parts = vec![(self.number(constant), Rational::one())];
+                    for (term, c) in terms {
+                        parts.push((self.substitute_memo(term, replace, memo), c));
+                    }
+                    self.sum(parts)
+                }
+                Node::Product(factors) => {
+                    let mut parts = Vec::with_capacity(factors.len());
+                    for (base, e) in factors {
+                        parts.push((self.substitute_memo(base, replace, memo), e));
+                    }
+                    self.product(parts)
+                }
+                Node::Call(function, argument) => {
+                    let argument = self.substitute_memo(argument, replace, memo);
+                    self.call(function, argument)
+                }
+                Node::Select(switch, branches) => {
+                    let branches = branches
+                        .into_iter()
+                        .map(|b| self.substitute_memo(b, replace, memo))
+                        .collect();
+                    self.select(switch, branches)
+                }
+                Node::Derivative(operator, argument) => {
+                    let argument = self.substitute_memo(argument, replace, memo);
+                    self.derivative(operator, argument)
+                }
+                _ => id,
+            }
+        };
+        memo.insert(id, result);
+        result
+    }
+}

@@ -1,0 +1,167 @@
+//! What an expression can be.
+
+use super::Id;
+pub use num_rational::BigRational as Rational;
+
+/// A derivative of a field: ∂x^x |∂x|^absx ∂y^y ∂t^t of field number `field`.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct Jet {
+    pub field: u8,
+    pub t: u8,
+    pub x: u8,
+    pub absx: u8,
+    pub y: u8,
+}
+
+impl Jet {
+    /// The field itself.
+    pub fn value(field: usize) -> Self {
+        Jet { field: field as u8, t: 0, x: 0, absx: 0, y: 0 }
+    }
+
+    /// Whether a y-dependent base state has this jet (no x or t in it).
+    pub fn is_base(self) -> bool {
+        self.t == 0 && self.x == 0 && self.absx == 0
+    }
+
+    /// The jet with one more derivative.
+    pub fn derived(self, operator: Operator) -> Self {
+        let mut jet = self;
+        match operator {
+            Operator::Dx => jet.x += 1,
+            Operator::Dy => jet.y += 1,
+            Operator::Dt => jet.t += 1,
+            Operator::AbsDx => jet.absx += 1,
+        }
+        jet
+    }
+}
+
+/// A constitutive law kept opaque, with derivative indices: p⁰_nny is
+/// `LawAtom { law: p, index: [2, 0, …], y: 1 }`.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub struct LawAtom {
+    pub law: usize,
+    /// Partial derivatives with respect to each field.
+    pub index: Vec<u8>,
+    /// At the base state: total y-derivatives. In the full state: explicit partial y-derivatives.
+    pub y: u8,
+}
+
+impl LawAtom {
+    /// The atom with one more derivative with respect to `field`.
+    pub fn partial(&self, field: usize) -> Self {
+        let mut atom = self.clone();
+        atom.index[field] += 1;
+        atom
+    }
+
+    /// The atom with one more y-derivative.
+    pub fn dy(&self) -> Self {
+        LawAtom { y: self.y + 1, ..self.clone() }
+    }
+}
+
+/// Differential operators of the spec language.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Operator {
+    Dx,
+    Dy,
+    Dt,
+    AbsDx,
+}
+
+/// Elementary functions (√ is a power).
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
+pub enum Function {
+    Exp,
+    Log,
+    Sin,
+    Cos,
+    Tan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Atan,
+}
+
+impl Function {
+    pub const ALL: [Function; 9] = [
+        Function::Exp,
+        Function::Log,
+        Function::Sin,
+        Function::Cos,
+        Function::Tan,
+        Function::Sinh,
+        Function::Cosh,
+        Function::Tanh,
+        Function::Atan,
+    ];
+
+    /// The name in the spec language.
+    pub fn name(self) -> &'static str {
+        match self {
+            Function::Exp => "exp",
+            Function::Log => "log",
+            Function::Sin => "sin",
+            Function::Cos => "cos",
+            Function::Tan => "tan",
+            Function::Sinh => "sinh",
+            Function::Cosh => "cosh",
+            Function::Tanh => "tanh",
+            Function::Atan => "atan",
+        }
+    }
+}
+
+/// One expression; children are ids of the same graph.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    Number(Rational),
+    Pi,
+    Parameter(usize),
+    /// The wavenumber of the fundamental (in the amplitude alone).
+    Wavenumber,
+    /// The cross-stream coordinate y.
+    Coordinate,
+    /// A derivative of a field of the full state.
+    Jet(Jet),
+    /// ∂y^order of a solved base field.
+    Base(usize, u8),
+    /// A law and its derivatives at the full state.
+    StateLaw(LawAtom),
+    /// A law and its derivatives at the base state.
+    BaseLaw(LawAtom),
+    /// constant + Σ coefficient · term, terms in id order, coefficients nonzero.
+    Sum(Rational, Vec<(Id, Rational)>),
+    /// Π base^exponent, bases in id order, exponents nonzero.
+    Product(Vec<(Id, Rational)>),
+    Call(Function, Id),
+    /// One branch a choice of the switch parameter.
+    Select(usize, Vec<Id>),
+    /// A differential operator not yet carried out.
+    Derivative(Operator, Id),
+    /// Input `position` of array `array` of a kernel.
+    Slot(usize, usize),
+}
+
+impl Node {
+    /// Calls `visit` on each child.
+    pub fn for_each_child(&self, mut visit: impl FnMut(Id)) {
+        match self {
+            Node::Sum(_, parts) | Node::Product(parts) => parts.iter().for_each(|p| visit(p.0)),
+            Node::Call(_, arg) | Node::Derivative(_, arg) => visit(*arg),
+            Node::Select(_, branches) => branches.iter().for_each(|&b| visit(b)),
+            Node::Number(_)
+            | Node::Pi
+            | Node::Parameter(_)
+            | Node::Wavenumber
+            | Node::Coordinate
+            | Node::Jet(_)
+            | Node::Base(..)
+            | Node::StateLaw(_)
+            | Node::BaseLaw(_)
+            | Node::Slot(..) => {}
+        }
+    }
+}

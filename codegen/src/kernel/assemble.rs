@@ -1,0 +1,551 @@
+//! All kernels of a model, and the structure that says what their inputs and outputs mean.
+
+use super::{Array, Kernel, Lowering};
+use crate::derive::{CaseClosure, Derivation, Form, Monomial, Opener, base_value};
+use crate::graph::{Graph, Id, Jet, Node, Printer, Rational, Variable};
+use crate::model::Amplitude;
+use crate::structure::*;
+use num_traits::One;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// The kernels of a model with their structure.
+pub struct ModelKernels {
+    pub structure: Structure,
+    pub kernels: Vec<(KernelId, Kernel)>,
+    /// `forms[d − 2][row]`
+    pub forms: Vec<Vec<Option<Kernel>>>,
+    pub residuals: Vec<(ResidualId, Kernel)>,
+}
+
+/// Opens the laws and lowers every operator.
+pub fn kernels(derivation: &mut Derivation) -> ModelKernels {
+    let Derivation { model, operators } = derivation;
+    let mut graph = std::mem::take(&mut model.graph);
+    let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
+    let opener = Opener::new(&model.laws, &model.base.closed, &uniform);
+    let mut assembler = Assembler {
+        graph: &mut graph,
+        opener,
+        model,
+        operators,
+        expressions: Vec::new(),
+        base_order: 2,
+    };
+    let structure = assembler.structure();
+    let result = assembler.lower(structure);
+    derivation.model.graph = graph;
+    result
+}
+
+struct Assembler<'a> {
+    graph: &'a mut Graph,
+    opener: Opener<'a>,
+    model: &'a crate::model::Model,
+    operators: &'a crate::derive::Operators,
+    /// Opened outputs of each real kernel.
+    expressions: Vec<(KernelId, Vec<Id>)>,
+    base_order: usize,
+}
+
+impl Assembler<'_> {
+    fn open(&mut self, id: Id) -> Id {
+        self.opener.at_base(self.graph, id)
+    }
+
+    fn kernel(&mut self, id: KernelId, outputs: Vec<Id>) {
+        for node in self.graph.topological(&outputs) {
+            if let Node::Base(_, order) = self.graph.node(node) {
+                self.base_order = self.base_order.max(usize::from(*order));
+            }
+        }
+        self.expressions.push((id, outputs));
+    }
+
+    /// Opens `ids` and makes them the outputs of a kernel.
+    fn opened(&mut self, id: KernelId, ids: Vec<Id>) {
+        let outputs = ids.into_iter().map(|id| self.open(id)).collect();
+        self.kernel(id, outputs);
+    }
+
+    /// A residual and its derivative by each base jet it holds.
+    fn with_jacobian(&mut self, residual: Id, outputs: &mut Vec<Id>) -> Vec<BaseJet> {
+        let opened = self.open(residual);
+        let mut atoms = BTreeSet::new();
+        for node in self.graph.topological(&[opened]) {
+            if let Node::Base(field, order) = self.graph.node(node) {
+                atoms.insert((*field, *order));
+            }
+        }
+        outputs.push(opened);
+        for &(field, order) in &atoms {
+            outputs.push(self.graph.differentiate(opened, Variable::Base(field, order)));
+        }
+        atoms.into_iter().map(|(field, order)| BaseJet { field, order: usize::from(order) }).collect()
+    }
+
+    fn structure(&mut self) -> Structure {
+        let (model, operators) = (self.model, self.operators);
+        let ends = match &model.interval {
+            Some(interval) => vec![interval.lower, interval.upper],
+            None => vec![self.graph.zero(), self.graph.one()],
+        };
+        self.kernel(KernelId::Interval, ends);
+        let base = self.base();
+        let linear = operators.linear.iter().map(|t| TermInfo { row: t.row, jet: t.jet }).collect();
+        let adjoint = operators.adjoint.iter().map(|t| TermInfo { row: t.row, jet: t.jet }).collect();
+        self.opened(KernelId::Linear, operators.linear.iter().map(|t| t.coefficient).collect());
+        self.opened(KernelId::Adjoint, operators.adjoint.iter().map(|t| t.coefficient).collect());
+        let (form_jets, coefficients) = self.nonlinear();
+        let cases = (0..operators.cases.len()).map(|case| self.case(case)).collect();
+        let amplitude = self.amplitude();
+        let outputs = self.outputs();
+        let automatic = |index: usize| model.base.automatic.iter().any(|(p, _)| *p == index);
+        Structure {
+            name: model.name.clone(),
+            title: model.title.clone(),
+            order: operators.order,
+            periodic: model.periodic.clone(),
+            coordinate: model.interval.as_ref().map(|i| i.name.clone()),
+            fields: model
+                .fields
+                .iter()
+                .map(|f| FieldInfo {
+                    name: f.name.clone(),
+                    doc: f.doc.clone(),
+                    lower: f.lower,
+                    upper: f.upper,
+                    uniform: f.uniform,
+                })
+                .collect(),
+            parameters: model
+                .parameters
+                .iter()
+                .enumerate()
+                .map(|(index, p)| ParameterInfo {
+                    name: p.name.clone(),
+                    doc: p.doc.clone(),
+                    default: p.default,
+                    lower: p.lower,
+                    upper: p.upper,
+                    choices: p.choices.clone(),
+                    automatic: automatic(index),
+                })
+                .collect(),
+            balances: model.balances.iter().map(|b| b.name.clone()).collect(),
+            base_order: self.base_order,
+            base,
+            pairing: operators.pairing.clone(),
+            parity: operators
+                .parity
+                .as_ref()
+                .map(|p| ParityInfo { fields: p.fields.clone(), rows: p.rows.clone() }),
+            linear,
+            adjoint,
+            form_jets,
+            form_coefficients: coefficients,
+            forms: operators
+                .nonlinear
+                .iter()
+                .map(|rows| rows.iter().map(|form| !form.terms.is_empty()).collect())
+                .collect(),
+            residual_jets: Vec::new(),
+            switches: operators.switches.clone(),
+            cases,
+            amplitude,
+            outputs,
+            operations: Vec::new(),
+        }
+    }
+
+    fn base(&mut self) -> BaseInfo {
+        let (model, operators) = (self.model, self.operators);
+        let mut outputs = Vec::new();
+        let mut rows = Vec::new();
+        for row in &operators.base {
+            let jets = self.with_jacobian(row.residual, &mut outputs);
+            let (balance, field, order) = (row.balance, row.field, usize::from(row.order));
+            rows.push(BaseRowInfo { balance, field, order, jets });
+        }
+        self.kernel(KernelId::Base, outputs);
+        let mut outputs = Vec::new();
+        let mut integrals = Vec::new();
+        for &(integrand, value) in &operators.base_integrals {
+            integrals.push(self.with_jacobian(integrand, &mut outputs));
+            outputs.push(value);
+        }
+        self.kernel(KernelId::BaseIntegrals, outputs);
+        let mut guesses = Vec::new();
+        for &field in &operators.solved {
+            guesses.push(model.base.guesses[field].unwrap_or_else(|| self.graph.zero()));
+        }
+        self.kernel(KernelId::Guess, guesses);
+        let mut conditions = Vec::new();
+        let mut automatic = Vec::new();
+        for (parameter, condition) in &model.base.automatic {
+            let closed = &model.base.closed;
+            let state = self.opener.at_state(self.graph, condition.residual);
+            let value = self.graph.substitute(state, &mut |graph, node| match node {
+                Node::Jet(jet) if jet.is_base() => {
+                    Some(base_value(graph, closed, usize::from(jet.field), jet.y))
+                }
+                Node::Jet(_) => Some(graph.zero()),
+                _ => None,
+            });
+            conditions.push(value);
+            automatic.push(AutomaticInfo { parameter: *parameter, end: condition.end });
+        }
+        self.kernel(KernelId::Automatic, conditions);
+        BaseInfo {
+            solved: operators.solved.clone(),
+            closed: model.base.closed.iter().map(Option::is_some).collect(),
+            rows,
+            integrals,
+            automatic,
+        }
+    }
+
+    /// The distinct coefficients of N2, N3 and the jets they multiply.
+    fn nonlinear(&mut self) -> (Vec<Jet>, usize) {
+        let (jets, coefficients) = form_tables(&self.operators.nonlinear);
+        let count = coefficients.len();
+        self.opened(KernelId::Nonlinear, coefficients);
+        (jets, count)
+    }
+
+    fn case(&mut self, index: usize) -> CaseInfo {
+        let case = &self.operators.cases[index];
+        let mut outputs = Vec::new();
+        let mut base_conditions = Vec::new();
+        for condition in &case.base_conditions {
+            let jets = self.with_jacobian(condition.residual, &mut outputs);
+            base_conditions.push(BaseConditionInfo { end: condition.end, jets });
+        }
+        self.kernel(KernelId::BaseConditions(index), outputs);
+
+        let mut coefficients = Vec::new();
+        let mut conditions = Vec::new();
+        for condition in &case.conditions {
+            coefficients.extend(condition.form.terms.values().copied());
+            let monomials = condition.form.terms.keys().cloned().collect();
+            conditions.push(ConditionInfo { end: condition.end, field: condition.field, monomials });
+        }
+        self.opened(KernelId::Conditions(index), coefficients);
+
+        let mut coefficients = Vec::new();
+        let adjoint = case.adjoint.clone().map(|list| {
+            let mut infos = Vec::new();
+            for condition in list {
+                let mut jets = Vec::new();
+                for (jet, symbol) in condition.combination {
+                    for ((x, absx), id) in symbol {
+                        jets.push(Jet { x, absx, ..jet });
+                        coefficients.push(id);
+                    }
+                }
+                infos.push(AdjointConditionInfo { end: condition.end, balance: condition.balance, jets });
+            }
+            infos
+        });
+        self.opened(KernelId::AdjointConditions(index), coefficients);
+
+        let mut coefficients = Vec::new();
+        let mut closures = Vec::new();
+        for closure in &case.closures {
+            let (kind, field, density, column) = match closure {
+                CaseClosure::Conserved { density, column } => {
+                    (ClosureKind::Conserved, None, density.clone(), column.clone())
+                }
+                CaseClosure::Gauge { field, column } => {
+                    let one = self.graph.one();
+                    (ClosureKind::Gauge, Some(*field), vec![(Jet::value(*field), one)], column.clone())
+                }
+                CaseClosure::Unknown { field, density } => {
+                    (ClosureKind::Unknown, Some(*field), density.clone(), Vec::new())
+                }
+            };
+            coefficients.extend(density.iter().map(|(_, id)| *id));
+            coefficients.extend(column.iter().map(|(_, id)| *id));
+            closures.push(ClosureInfo {
+                kind,
+                field,
+                density: density.into_iter().map(|(jet, _)| jet).collect(),
+                column: column.into_iter().map(|(row, _)| row).collect(),
+            });
+        }
+        self.opened(KernelId::Closures(index), coefficients);
+        CaseInfo { choices: case.choices.clone(), base_conditions, conditions, adjoint, closures }
+    }
+
+    fn amplitude(&mut self) -> AmplitudeInfo {
+        let (outputs, info) = match &self.model.amplitude {
+            Amplitude::Integral { weights, value } => {
+                let mut outputs: Vec<Id> = weights.iter().map(|(_, w)| *w).collect();
+                outputs.push(*value);
+                let weighted = weights.iter().map(|(field, _)| *field).collect();
+                (outputs, AmplitudeInfo { weighted, field: None, description: String::new() })
+            }
+            Amplitude::Point { field, place, value } => {
+                let place = place.unwrap_or_else(|| self.graph.zero());
+                (vec![*value, place], AmplitudeInfo {
+                    weighted: Vec::new(),
+                    field: Some(*field),
+                    description: String::new(),
+                })
+            }
+        };
+        let description = self.describe_amplitude();
+        self.kernel(KernelId::Amplitude, outputs);
+        AmplitudeInfo { description, ..info }
+    }
+
+    fn describe_amplitude(&self) -> String {
+        let fields = self.model.field_names();
+        let parameters: Vec<String> = self.model.parameters.iter().map(|p| p.name.clone()).collect();
+        let coordinate = self.model.coordinate();
+        let printer = Printer {
+            graph: self.graph,
+            fields: &fields,
+            parameters: &parameters,
+            laws: &[],
+            coordinate,
+            slots: &[],
+        };
+        match &self.model.amplitude {
+            Amplitude::Integral { weights, value } => {
+                let terms: Vec<String> = weights
+                    .iter()
+                    .map(|(field, weight)| {
+                        let square = format!("|{}|²", fields[*field]);
+                        if self.graph.as_number(*weight).is_some_and(One::is_one) {
+                            square
+                        } else {
+                            format!("{} {square}", printer.factor(*weight))
+                        }
+                    })
+                    .collect();
+                let sum = terms.join(" + ");
+                if self.model.interval.is_some() {
+                    format!("∫ ({sum}) d{coordinate} = {}", printer.print(*value))
+                } else {
+                    format!("{sum} = {}", printer.print(*value))
+                }
+            }
+            Amplitude::Point { field, place, value } => match (place, &self.model.interval) {
+                (Some(place), Some(_)) => format!(
+                    "|{}({})| = {}",
+                    fields[*field],
+                    printer.print(*place),
+                    printer.print(*value)
+                ),
+                _ => format!("|{}| = {}", fields[*field], printer.print(*value)),
+            },
+        }
+    }
+
+    fn outputs(&mut self) -> Vec<OutputInfo> {
+        let mut coefficients = Vec::new();
+        let mut infos = Vec::new();
+        for (output, form) in self.model.outputs.iter().zip(&self.operators.outputs) {
+            coefficients.push(output.place.unwrap_or_else(|| self.graph.zero()));
+            coefficients.extend(form.terms.values().copied());
+            infos.push(OutputInfo {
+                name: output.name.clone(),
+                doc: output.doc.clone(),
+                at_point: output.place.is_some(),
+                monomials: form.terms.keys().cloned().collect(),
+            });
+        }
+        self.opened(KernelId::Outputs, coefficients);
+        infos
+    }
+
+    fn lower(mut self, mut structure: Structure) -> ModelKernels {
+        // Closed forms are asked for to the same order as solved fields.
+        let zero = self.graph.zero();
+        let mut closed = Vec::new();
+        for field in 0..structure.fields.len() {
+            for order in 0..=self.base_order {
+                closed.push(match self.model.base.closed[field] {
+                    Some(_) => base_value(self.graph, &self.model.base.closed, field, order as u8),
+                    None => zero,
+                });
+            }
+        }
+        self.expressions.push((KernelId::Closed, closed));
+        structure.base_order = self.base_order;
+        let residual_outputs = self.residuals();
+        structure.residual_jets = residual_jets(self.graph, &residual_outputs);
+        let residual_jets = structure.residual_jets.clone();
+        let forms = self.forms(&structure);
+        let graph = &*self.graph;
+        let locate = |node: &Node| match node {
+            Node::Coordinate => Some((0, 0)),
+            Node::Wavenumber => Some((0, 1)),
+            Node::Parameter(index) => Some((0, 2 + index)),
+            Node::Base(field, order) => {
+                Some((0, structure.base_position(*field, usize::from(*order))))
+            }
+            _ => None,
+        };
+        let point = || vec![Array { name: "p", real: true }];
+        let kernels: Vec<(KernelId, Kernel)> = self
+            .expressions
+            .iter()
+            .map(|(id, outputs)| {
+                (*id, Lowering { inputs: point(), locate: &locate }.lower(graph, outputs))
+            })
+            .collect();
+        let locate = |node: &Node| match node {
+            Node::Coordinate => Some((0, 0)),
+            Node::Wavenumber => Some((0, 1)),
+            Node::Parameter(index) => Some((0, 2 + index)),
+            Node::Jet(jet) => residual_jets.iter().position(|j| j == jet).map(|p| (1, p)),
+            _ => None,
+        };
+        let arrays =
+            || vec![Array { name: "p", real: true }, Array { name: "x", real: false }];
+        let residuals = residual_outputs
+            .iter()
+            .map(|(id, outputs)| {
+                (*id, Lowering { inputs: arrays(), locate: &locate }.lower(graph, outputs))
+            })
+            .collect();
+        let count = |kernels: &[(KernelId, Kernel)], of: fn(&Kernel) -> usize| -> usize {
+            let real: usize = kernels.iter().map(|(_, k)| of(k)).fold(0, usize::saturating_add);
+            real.saturating_add(forms.iter().flatten().flatten().map(of).sum())
+        };
+        structure.operations = vec![count(&kernels, |k| k.unshared), count(&kernels, Kernel::shared)];
+        ModelKernels { structure, kernels, forms, residuals }
+    }
+
+    /// The unexpanded residuals in the fields' derivatives, laws opened.
+    fn residuals(&mut self) -> Vec<(ResidualId, Vec<Id>)> {
+        let mut residuals = Vec::new();
+        let balances: Vec<Id> = self.model.balances.iter().map(|b| b.residual).collect();
+        let opened = balances.into_iter().map(|id| self.opener.at_state(self.graph, id)).collect();
+        residuals.push((ResidualId::Balances, opened));
+        for (index, case) in self.operators.cases.iter().enumerate() {
+            let mut opened = Vec::new();
+            for condition in &case.conditions {
+                opened.push(self.opener.at_state(self.graph, condition.residual));
+            }
+            residuals.push((ResidualId::Conditions(index), opened));
+        }
+        residuals
+    }
+
+    fn forms(&mut self, structure: &Structure) -> Vec<Vec<Option<Kernel>>> {
+        let (jets, coefficients) = form_tables(&self.operators.nonlinear);
+        let position: HashMap<Id, usize> =
+            coefficients.iter().enumerate().map(|(i, id)| (*id, i)).collect();
+        const NAMES: [&str; 8] = ["x", "y", "z", "w", "v", "u", "s", "r"];
+        let mut kernels = Vec::new();
+        for (index, rows) in self.operators.nonlinear.iter().enumerate() {
+            let degree = index + 2;
+            let mut line = Vec::new();
+            for form in rows.iter().take(structure.balances.len()) {
+                if form.terms.is_empty() {
+                    line.push(None);
+                    continue;
+                }
+                let polar = polarise(self.graph, form, degree, &jets, &position);
+                let mut inputs = vec![Array { name: "c", real: true }];
+                inputs.extend(NAMES[..degree].iter().map(|&name| Array { name, real: false }));
+                let locate = |node: &Node| match node {
+                    Node::Slot(array, position) => Some((*array, *position)),
+                    _ => None,
+                };
+                line.push(Some(Lowering { inputs, locate: &locate }.lower(self.graph, &[polar])));
+            }
+            kernels.push(line);
+        }
+        kernels
+    }
+}
+
+/// The distinct jets and coefficients of all nonlinear forms, in order of appearance.
+fn form_tables(forms: &[Vec<Form>]) -> (Vec<Jet>, Vec<Id>) {
+    let mut jets = BTreeSet::new();
+    let mut coefficients = Vec::new();
+    let mut known = std::collections::HashSet::new();
+    for form in forms.iter().flatten() {
+        for (monomial, &coefficient) in &form.terms {
+            jets.extend(monomial.iter().copied());
+            if known.insert(coefficient) {
+                coefficients.push(coefficient);
+            }
+        }
+    }
+    (jets.into_iter().collect(), coefficients)
+}
+
+/// The symmetric multilinear form of a homogeneous one:
+/// Π q_i → 1/d! Σ over permutations of Π q_i[argument σ(i)].
+///
+/// Slot (0, i) is coefficient i; slot (a, i) is jet i of argument a.
+fn polarise(
+    graph: &mut Graph,
+    form: &Form,
+    degree: usize,
+    jets: &[Jet],
+    position: &HashMap<Id, usize>,
+) -> Id {
+    let place: HashMap<Jet, usize> = jets.iter().enumerate().map(|(i, j)| (*j, i)).collect();
+    let mut memo = BTreeMap::new();
+    let arguments: Vec<usize> = (1..=degree).collect();
+    let factorial: i64 = (1..=degree as i64).product();
+    let weight = Rational::new(1.into(), factorial.into());
+    let mut parts = Vec::new();
+    for (monomial, coefficient) in &form.terms {
+        let permutations = permutation_sum(graph, monomial, &arguments, &place, &mut memo);
+        let coefficient = graph.slot(0, position[coefficient]);
+        parts.push((graph.mul(coefficient, permutations), Rational::one()));
+    }
+    let total = graph.sum(parts);
+    // The factor stands before the whole sum, as one multiplication.
+    let weight = graph.number(weight);
+    match graph.node(total) {
+        Node::Sum(..) => {
+            let one = Rational::one();
+            graph.intern(Node::Product(vec![(weight, one.clone()), (total, one)]))
+        }
+        _ => graph.mul(weight, total),
+    }
+}
+
+/// Σ over permutations; sums over fewer jets are shared between monomials.
+fn permutation_sum(
+    graph: &mut Graph,
+    monomial: &[Jet],
+    arguments: &[usize],
+    place: &HashMap<Jet, usize>,
+    memo: &mut BTreeMap<(Monomial, Vec<usize>), Id>,
+) -> Id {
+    let Some((last, rest)) = monomial.split_last() else { return graph.one() };
+    let key = (monomial.to_vec(), arguments.to_vec());
+    if let Some(&known) = memo.get(&key) {
+        return known;
+    }
+    let mut parts = Vec::new();
+    for (i, &argument) in arguments.iter().enumerate() {
+        let mut others = arguments.to_vec();
+        others.remove(i);
+        let inner = permutation_sum(graph, rest, &others, place, memo);
+        let slot = graph.slot(argument, place[last]);
+        parts.push((graph.mul(inner, slot), Rational::one()));
+    }
+    let total = graph.sum(parts);
+    memo.insert(key, total);
+    total
+}
+
+fn residual_jets(graph: &Graph, residuals: &[(ResidualId, Vec<Id>)]) -> Vec<Jet> {
+    let roots: Vec<Id> = residuals.iter().flat_map(|(_, ids)| ids.iter().copied()).collect();
+    let mut jets = BTreeSet::new();
+    for node in graph.topological(&roots) {
+        if let Node::Jet(jet) = graph.node(node) {
+            jets.insert(*jet);
+        }
+    }
+    jets.into_iter().collect()
+}

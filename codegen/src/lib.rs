@@ -1,0 +1,48 @@
+//! From balance equations to operators, at build time, symbolically and exactly.
+//!
+//! The pipeline, one module a stage and one type a stage:
+//!
+//! | stage | module | from | to |
+//! |---|---|---|---|
+//! | parse | [`syntax`] | text | [`syntax::tree::ModelTree`] |
+//! | resolve | [`model`] | syntax tree | [`model::Model`], on one [`graph::Graph`] |
+//! | derive | [`derive`] | checked model | [`derive::Derivation`]: L, L†, N2, N3, conditions |
+//! | lower | [`kernel`] | operators | [`kernel::ModelKernels`]: straight-line programs |
+//! | emit | [`emit`] | kernels, operators | Rust source, readable text |
+//!
+//! [`generate`] is the whole of it on a screen; [`build`] wraps it for a build script.
+
+pub mod build;
+pub mod derive;
+pub mod diagnostic;
+pub mod emit;
+pub mod graph;
+pub mod kernel;
+pub mod model;
+pub mod structure;
+pub mod syntax;
+
+use diagnostic::{Diagnostics, SourceFile};
+use std::collections::BTreeMap;
+
+/// Truncation order of the expansion: N2 and N3, which give the first Landau coefficient.
+pub const ORDER: usize = 3;
+
+/// A spec and the law files it may import.
+#[derive(Clone, Debug)]
+pub struct Sources {
+    pub spec: SourceFile,
+    /// Law files by name.
+    pub laws: BTreeMap<String, SourceFile>,
+}
+
+/// Spec → operators → kernels.
+///
+/// # Errors
+/// Everything that is wrong with the form of the spec, in one run.
+pub fn generate(sources: &Sources) -> Result<(derive::Derivation, kernel::ModelKernels), Diagnostics> {
+    let model = model::resolve(sources)?;
+    let mut derivation = derive::derive(model, ORDER)?;
+    let kernels = kernel::kernels(&mut derivation);
+    Ok((derivation, kernels))
+}

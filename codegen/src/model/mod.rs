@@ -1,0 +1,153 @@
+//! The checked model: names resolved, definitions expanded, every expression a node of one graph.
+
+mod resolve;
+mod scope;
+mod statement;
+
+pub use resolve::resolve;
+
+use crate::diagnostic::Location;
+use crate::graph::{Graph, Id};
+
+/// An end of the cross-stream interval.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum End {
+    Lower,
+    Upper,
+}
+
+impl End {
+    pub const BOTH: [End; 2] = [End::Lower, End::Upper];
+}
+
+/// A model whose form has been checked as far as names go.
+pub struct Model {
+    pub name: String,
+    pub title: String,
+    pub graph: Graph,
+    /// Name of the periodic coordinate.
+    pub periodic: String,
+    pub interval: Option<Interval>,
+    /// The user's parameters, then the wavenumber k (which only the amplitude may use).
+    pub parameters: Vec<Parameter>,
+    pub fields: Vec<Field>,
+    pub laws: Vec<Law>,
+    pub balances: Vec<Balance>,
+    pub base: Base,
+    pub boundary: Vec<Condition>,
+    pub mean: Vec<Closure>,
+    pub amplitude: Amplitude,
+    pub outputs: Vec<Output>,
+    /// The text of every file that was read; the spec first.
+    pub sources: Vec<crate::diagnostic::SourceFile>,
+}
+
+impl Model {
+    pub fn field_names(&self) -> Vec<String> {
+        self.fields.iter().map(|f| f.name.clone()).collect()
+    }
+
+    /// Name of the cross-stream coordinate.
+    pub fn coordinate(&self) -> &str {
+        self.interval.as_ref().map_or("y", |i| i.name.as_str())
+    }
+}
+
+/// The cross-stream coordinate.
+pub struct Interval {
+    pub name: String,
+    pub lower: Id,
+    pub upper: Id,
+}
+
+pub struct Parameter {
+    pub name: String,
+    pub doc: String,
+    pub default: f64,
+    pub lower: f64,
+    pub upper: f64,
+    /// Names of the values of a switch; empty for a number.
+    pub choices: Vec<String>,
+    pub location: Location,
+}
+
+pub struct Field {
+    pub name: String,
+    pub doc: String,
+    /// Where the base state must lie.
+    pub lower: f64,
+    pub upper: f64,
+    /// An unknown number, constant in x and y, rather than a profile.
+    pub uniform: bool,
+    pub location: Location,
+}
+
+/// An opaque function of the fields, the coordinate and the parameters.
+pub struct Law {
+    pub name: String,
+    pub doc: String,
+    pub body: Id,
+}
+
+/// left − right of a balance, divided (if asked) by a base-state quantity.
+pub struct Balance {
+    pub name: String,
+    pub doc: String,
+    /// In terms of the full state, derivatives not yet carried out.
+    pub residual: Id,
+    pub divisor: Option<Id>,
+    pub paired_field: Option<usize>,
+    pub location: Location,
+}
+
+/// left − right of a condition at one end.
+#[derive(Clone)]
+pub struct Condition {
+    pub end: End,
+    pub residual: Id,
+    /// Switches and the choices under which the condition holds.
+    pub guard: Vec<(usize, usize)>,
+    pub location: Location,
+}
+
+/// ∫ integrand dy = value.
+#[derive(Clone)]
+pub struct Integral {
+    pub integrand: Id,
+    pub value: Id,
+    pub location: Location,
+}
+
+pub struct Base {
+    /// Closed form of each field, where the spec gives one.
+    pub closed: Vec<Option<Id>>,
+    pub guesses: Vec<Option<Id>>,
+    pub conditions: Vec<Condition>,
+    pub integrals: Vec<Integral>,
+    /// Conditions that determine a parameter set to `auto`.
+    pub automatic: Vec<(usize, Condition)>,
+    pub location: Location,
+}
+
+/// What closes the problem at k = 0.
+#[derive(Clone)]
+pub enum Closure {
+    Conserved { integrand: Id, location: Location },
+    Gauge { field: usize, location: Location },
+    Unknown { field: usize, integral: Integral },
+}
+
+pub enum Amplitude {
+    /// ∫ Σ weight |field|² = value
+    Integral { weights: Vec<(usize, Id)>, value: Id },
+    /// |field| = |value| at a place
+    Point { field: usize, place: Option<Id>, value: Id },
+}
+
+pub struct Output {
+    pub name: String,
+    pub doc: String,
+    /// `None` for an integral over the interval.
+    pub place: Option<Id>,
+    pub body: Id,
+}

@@ -1,0 +1,555 @@
+//! Names and what they stand for: one scope a file, definitions expanded where they are used.
+
+use super::Parameter;
+use crate::diagnostic::{Diagnostic, Location, SourceFile, nearest};
+use crate::graph::{Function, Graph, Id, Jet, LawAtom, Node, Operator, Rational};
+use crate::syntax::tree::*;
+use num_traits::{One, ToPrimitive};
+use std::collections::HashMap;
+
+/// More expansions than any model needs: definitions that double at every step end here.
+const MOST_EXPANSIONS: usize = 20_000;
+const MOST_NODES: usize = 400_000;
+/// Deeper than any definition needs.
+const DEEPEST_EXPRESSION: usize = 256;
+
+pub(super) type Resolved<T> = Result<T, Diagnostic>;
+
+/// The names of one file.
+#[derive(Default)]
+pub(super) struct Scope {
+    pub definitions: HashMap<String, Definition>,
+    /// Alias → (scope of the law file, name there).
+    pub imports: HashMap<String, (usize, String)>,
+    pub parameters: HashMap<String, ParameterItem>,
+}
+
+/// What names an expression may use.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Context {
+    /// Balances, conditions, outputs: everything.
+    State,
+    /// Law bodies: fields, but none of their derivatives.
+    Law,
+    /// Base profiles: parameters and the coordinate.
+    Profile,
+    /// Numbers: parameters alone.
+    Constant,
+    /// The right-hand side of the amplitude: parameters and k.
+    Amplitude,
+}
+
+/// Everything known while a model is being resolved.
+pub(super) struct Names {
+    pub graph: Graph,
+    pub files: Vec<SourceFile>,
+    pub scopes: Vec<Scope>,
+    pub parameters: Vec<Parameter>,
+    pub fields: HashMap<String, usize>,
+    pub field_count: usize,
+    /// Opaque laws of the model by name.
+    pub laws: HashMap<String, usize>,
+    pub used: Vec<bool>,
+    pub periodic: String,
+    pub coordinate: Option<String>,
+    expanding: Vec<(usize, String)>,
+    expansions: usize,
+    depth: usize,
+    memo: HashMap<(usize, String), Id>,
+}
+
+/// One place from which names are looked up.
+#[derive(Clone)]
+pub(super) struct View<'a> {
+    pub scope: usize,
+    pub context: Context,
+    pub arguments: &'a [(String, Id)],
+}
+
+impl Names {
+    pub fn new() -> Self {
+        Names {
+            graph: Graph::new(),
+            files: Vec::new(),
+            scopes: Vec::new(),
+            parameters: Vec::new(),
+            fields: HashMap::new(),
+            field_count: 0,
+            laws: HashMap::new(),
+            used: Vec::new(),
+            periodic: "x".into(),
+            coordinate: None,
+            expanding: Vec::new(),
+            expansions: 0,
+            depth: 0,
+            memo: HashMap::new(),
+        }
+    }
+
+    /// The node of an expression of the model file.
+    pub fn resolve(&mut self, expression: &Expression, context: Context) -> Resolved<Id> {
+        self.expression(expression, &View { scope: 0, context, arguments: &[] })
+    }
+
+    pub fn expression(&mut self, expression: &Expression, view: &View) -> Resolved<Id> {
+        self.depth += 1;
+        let result = if self.depth > DEEPEST_EXPRESSION || self.graph.len() > MOST_NODES {
+            Err(Diagnostic::new(
+                expression.location.clone(),
+                "the expression is too large",
+                "a smaller expression",
+            )
+            .hint("does a definition multiply itself?"))
+        } else {
+            self.expression_kind(expression, view)
+        };
+        self.depth -= 1;
+        result
+    }
+
+    fn expression_kind(&mut self, expression: &Expression, view: &View) -> Resolved<Id> {
+        let place = &expression.location;
+        match &expression.kind {
+            ExpressionKind::Number(value) => Ok(self.graph.number(value.clone())),
+            ExpressionKind::Negative(inner) => {
+                let inner = self.expression(inner, view)?;
+                Ok(self.graph.neg(inner))
+            }
+            ExpressionKind::Binary(operator, left, right) => {
+                let a = self.expression(left, view)?;
+                let b = self.expression(right, view)?;
+                match operator {
+                    Binary::Add => Ok(self.graph.add(a, b)),
+                    Binary::Subtract => Ok(self.graph.sub(a, b)),
+                    Binary::Multiply => Ok(self.graph.mul(a, b)),
+                    Binary::Divide if self.graph.vanishes(b) => {
+                        Err(Diagnostic::new(right.location.clone(), "division by zero", "a nonzero divisor"))
+                    }
+                    Binary::Divide => Ok(self.graph.div(a, b)),
+                    Binary::Power => self.power(a, b, right),
+                }
+            }
+            ExpressionKind::Modulus(_) => Err(Diagnostic::new(
+                place.clone(),
+                "|q| stands for a modulus in the amplitude alone",
+                "an expression without |…|",
+            )),
+            ExpressionKind::Select(switch, branches) => self.select(switch, branches, view, place),
+            ExpressionKind::Name(name) => self.name(name, place, view),
+            ExpressionKind::Call(name, arguments) => self.call(name, arguments, place, view),
+        }
+    }
+
+    fn power(&mut self, base: Id, exponent: Id, written: &Expression) -> Resolved<Id> {
+        if let Some(value) = self.graph.as_number(exponent).cloned() {
+            let size = value.to_f64().unwrap_or(f64::INFINITY);
+            if size.abs() > 100.0 {
+                let message = "the exponent is too large";
+                return Err(Diagnostic::new(written.location.clone(), message, "at most 100"));
+            }
+            if self.graph.is_zero(base) && size <= 0.0 {
+                let message = "zero to a power that is not positive";
+                return Err(Diagnostic::new(written.location.clone(), message, "a positive exponent"));
+            }
+            return Ok(self.graph.pow(base, value));
+        }
+        // a^b = exp(b log a)
+        let log = self.graph.call(Function::Log, base);
+        let argument = self.graph.mul(exponent, log);
+        Ok(self.graph.call(Function::Exp, argument))
+    }
+
+    fn select(
+        &mut self,
+        switch: &Name,
+        branches: &[(Name, Expression)],
+        view: &View,
+        place: &Location,
+    ) -> Resolved<Id> {
+        let (parameter, order) = self.branches(switch, branches, view.scope, place)?;
+        let mut values = Vec::with_capacity(order.len());
+        for branch in order {
+            values.push(self.expression(&branches[branch].1, view)?);
+        }
+        Ok(self.graph.select(parameter, values))
+    }
+
+    /// The switch, and for each of its choices the branch that belongs to it.
+    pub fn branches<T>(
+        &mut self,
+        switch: &Name,
+        branches: &[(Name, T)],
+        scope: usize,
+        place: &Location,
+    ) -> Resolved<(usize, Vec<usize>)> {
+        let parameter = self.find_parameter(&switch.text, scope).ok_or_else(|| {
+            let message = format!("`{}` is not a switch", switch.text);
+            Diagnostic::new(switch.location.clone(), message, "a parameter declared as `name = a in {a, b}`")
+        })?;
+        self.used[parameter] = true;
+        let choices = self.parameters[parameter].choices.clone();
+        if choices.is_empty() {
+            let message = format!("`{}` is a number, not a switch", switch.text);
+            return Err(Diagnostic::new(switch.location.clone(), message, "a parameter declared as `name = a in {a, b}`"));
+        }
+        for (i, (name, _)) in branches.iter().enumerate() {
+            if !choices.contains(&name.text) {
+                let message = format!("`{}` has no choice `{}`", switch.text, name.text);
+                let near = nearest(&name.text, choices.iter().map(String::as_str));
+                return Err(Diagnostic::new(name.location.clone(), message, format!("one of {}", choices.join(", ")))
+                    .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
+            }
+            if branches[..i].iter().any(|(other, _)| other.text == name.text) {
+                let message = format!("the choice `{}` stands twice", name.text);
+                return Err(Diagnostic::new(name.location.clone(), message, "each choice once"));
+            }
+        }
+        let mut order = Vec::with_capacity(choices.len());
+        for choice in &choices {
+            match branches.iter().position(|(name, _)| &name.text == choice) {
+                Some(branch) => order.push(branch),
+                None => {
+                    let message = format!("the choice `{choice}` of `{}` is missing", switch.text);
+                    return Err(Diagnostic::new(place.clone(), message, format!("a branch for each of {}", choices.join(", "))));
+                }
+            }
+        }
+        Ok((parameter, order))
+    }
+
+    fn name(&mut self, name: &str, place: &Location, view: &View) -> Resolved<Id> {
+        if let Some((_, id)) = view.arguments.iter().find(|(argument, _)| argument == name) {
+            return Ok(*id);
+        }
+        if self.coordinate.as_deref() == Some(name) && view.scope == 0 {
+            if matches!(view.context, Context::Constant | Context::Amplitude) {
+                return Err(misplaced(place, name, "the coordinate", view.context));
+            }
+            return Ok(self.graph.coordinate());
+        }
+        if view.scope == 0 {
+            if let Some(&field) = self.fields.get(name) {
+                if !matches!(view.context, Context::State | Context::Law) {
+                    return Err(misplaced(place, name, "a field", view.context));
+                }
+                return Ok(self.graph.jet(Jet::value(field)));
+            }
+            if let Some(&law) = self.laws.get(name) {
+                if !matches!(view.context, Context::State | Context::Law) {
+                    return Err(misplaced(place, name, "a law", view.context));
+                }
+                return Ok(self.law_atom(law));
+            }
+            if name == "k" && view.context == Context::Amplitude {
+                return Ok(self.graph.wavenumber());
+            }
+        }
+        if let Some(parameter) = self.find_parameter(name, view.scope) {
+            self.used[parameter] = true;
+            if !self.parameters[parameter].choices.is_empty() {
+                let message = format!("`{name}` is a switch, not a number");
+                return Err(Diagnostic::new(place.clone(), message, "`select` to choose by a switch"));
+            }
+            return Ok(self.graph.parameter(parameter));
+        }
+        if let Some(definition) = self.scopes[view.scope].definitions.get(name).cloned() {
+            if let Some(arguments) = &definition.arguments {
+                let message = format!("`{name}` takes {} argument(s)", arguments.len());
+                return Err(Diagnostic::new(place.clone(), message, format!("`{name}(…)`")));
+            }
+            return self.expand(view.scope, &definition, &[], place, view.context);
+        }
+        if let Some((_, law)) = self.scopes[view.scope].imports.get(name) {
+            let message = format!("`{name}` is the law `{law}`, which takes arguments");
+            return Err(Diagnostic::new(place.clone(), message, format!("`{name}(…)`")));
+        }
+        if name == "pi" {
+            return Ok(self.graph.pi());
+        }
+        if name == self.periodic && view.scope == 0 {
+            let message = format!("`{name}` may not appear: models do not depend on the periodic coordinate");
+            return Err(Diagnostic::new(place.clone(), message, "a field, a parameter or a number"));
+        }
+        Err(self.unknown(name, place, view))
+    }
+
+    pub fn law_atom(&mut self, law: usize) -> Id {
+        let index = vec![0; self.field_count];
+        self.graph.state_law(LawAtom { law, index, y: 0 })
+    }
+
+    fn call(
+        &mut self,
+        name: &Name,
+        arguments: &[Expression],
+        place: &Location,
+        view: &View,
+    ) -> Resolved<Id> {
+        let word = name.text.as_str();
+        if let Some(operator) = self.operator(word) {
+            let argument = self.one_argument(name, arguments, place, view)?;
+            return self.differential(operator, name, argument, view);
+        }
+        if word == "sqrt" {
+            let argument = self.one_argument(name, arguments, place, view)?;
+            return Ok(self.graph.pow(argument, Rational::new(1.into(), 2.into())));
+        }
+        if let Some(function) = Function::ALL.into_iter().find(|f| f.name() == word) {
+            let argument = self.one_argument(name, arguments, place, view)?;
+            return Ok(self.graph.call(function, argument));
+        }
+        if word == "integral" {
+            let message = "an integral is not part of a local expression";
+            return Err(Diagnostic::new(place.clone(), message, "an expression in the fields and their derivatives")
+                .hint("integrals stand in `base`, `mean`, `amplitude` and `outputs`"));
+        }
+        let found = match self.scopes[view.scope].definitions.get(word) {
+            Some(definition) => Some((view.scope, definition.clone())),
+            None => self.scopes[view.scope].imports.get(word).cloned().and_then(|(scope, law)| {
+                self.scopes[scope].definitions.get(&law).cloned().map(|d| (scope, d))
+            }),
+        };
+        let Some((scope, definition)) = found else {
+            if self.fields.contains_key(word) || self.find_parameter(word, view.scope).is_some() {
+                let message = format!("`{word}` is not a function");
+                return Err(Diagnostic::new(place.clone(), message, "an operator between the factors")
+                    .hint(format!("write a product as {word}*(…)")));
+            }
+            return Err(self.unknown(word, &name.location, view));
+        };
+        let expected = definition.arguments.as_deref().unwrap_or_default().len();
+        if expected != arguments.len() {
+            let message = format!("`{word}` takes {expected} argument(s), {} given", arguments.len());
+            return Err(Diagnostic::new(place.clone(), message, format!("{expected} argument(s)")));
+        }
+        let mut values = Vec::with_capacity(arguments.len());
+        for argument in arguments {
+            values.push(self.expression(argument, view)?);
+        }
+        self.expand(scope, &definition, &values, place, view.context)
+    }
+
+    fn one_argument(
+        &mut self,
+        name: &Name,
+        arguments: &[Expression],
+        place: &Location,
+        view: &View,
+    ) -> Resolved<Id> {
+        match arguments {
+            [argument] => self.expression(argument, view),
+            _ => {
+                let message = format!("`{}` takes one argument, {} given", name.text, arguments.len());
+                Err(Diagnostic::new(place.clone(), message, "one argument"))
+            }
+        }
+    }
+
+    /// The differential operator of this name: d or absd, then the name of a coordinate.
+    pub fn operator(&self, word: &str) -> Option<Operator> {
+        if word == "dt" {
+            return Some(Operator::Dt);
+        }
+        let rest = word.strip_prefix("absd").map(|c| (c, true));
+        let (coordinate, absolute) = rest.or_else(|| word.strip_prefix('d').map(|c| (c, false)))?;
+        if coordinate == self.periodic {
+            return Some(if absolute { Operator::AbsDx } else { Operator::Dx });
+        }
+        (Some(coordinate) == self.coordinate.as_deref() && !absolute).then_some(Operator::Dy)
+    }
+
+    fn differential(
+        &mut self,
+        operator: Operator,
+        name: &Name,
+        argument: Id,
+        view: &View,
+    ) -> Resolved<Id> {
+        if view.context != Context::State {
+            let message = format!("`{}` has no place here", name.text);
+            let expected = match view.context {
+                Context::Law => "a law is a function of the fields, not of their derivatives",
+                _ => "an expression without derivatives",
+            };
+            return Err(Diagnostic::new(name.location.clone(), message, expected)
+                .hint("put the derivative into a `let` of the model"));
+        }
+        if operator == Operator::Dt
+            && self.graph.any(argument, |n| matches!(n, Node::Derivative(Operator::Dt, _)))
+        {
+            return Err(Diagnostic::new(
+                name.location.clone(),
+                "a time derivative of second order",
+                "balances of first order in time",
+            )
+            .hint("introduce a field for the first time derivative"));
+        }
+        Ok(self.graph.derivative(operator, argument))
+    }
+
+    /// The body of a definition, its arguments replaced.
+    pub fn expand(
+        &mut self,
+        scope: usize,
+        definition: &Definition,
+        values: &[Id],
+        place: &Location,
+        context: Context,
+    ) -> Resolved<Id> {
+        let name = &definition.name.text;
+        let key = (scope, name.clone());
+        if let Some(start) = self.expanding.iter().position(|k| *k == key) {
+            let chain: Vec<_> = self.expanding[start..].iter().map(|(_, n)| n.as_str()).collect();
+            let message = format!("`{name}` is defined by itself");
+            return Err(Diagnostic::new(definition.name.location.clone(), message, "a definition in other terms")
+                .hint(format!("{} → {name}", chain.join(" → "))));
+        }
+        let plain = values.is_empty() && context == Context::State;
+        if plain && let Some(&known) = self.memo.get(&key) {
+            return Ok(known);
+        }
+        self.expansions += 1;
+        if self.expansions > MOST_EXPANSIONS {
+            return Err(Diagnostic::new(place.clone(), "the definitions expand without end", "a smaller model"));
+        }
+        let names = definition.arguments.as_deref().unwrap_or_default();
+        let arguments: Vec<_> =
+            names.iter().map(|n| n.text.clone()).zip(values.iter().copied()).collect();
+        self.expanding.push(key.clone());
+        let result =
+            self.expression(&definition.body, &View { scope, context, arguments: &arguments });
+        self.expanding.pop();
+        if plain && let Ok(id) = result {
+            self.memo.insert(key, id);
+        }
+        result
+    }
+
+    /// The index of a parameter seen from a scope; a law file's own are registered on first use.
+    pub fn find_parameter(&mut self, name: &str, scope: usize) -> Option<usize> {
+        if let Some(known) = self.parameters.iter().position(|p| p.name == name) {
+            let visible = scope == 0 || self.scopes[scope].parameters.contains_key(name);
+            return visible.then_some(known);
+        }
+        let item = self.scopes[scope].parameters.get(name).cloned()?;
+        let parameter = self.constant_parameter(&item)?;
+        self.parameters.push(parameter);
+        self.used.push(true);
+        Some(self.parameters.len() - 1)
+    }
+
+    fn unknown(&self, name: &str, place: &Location, view: &View) -> Diagnostic {
+        let scope = &self.scopes[view.scope];
+        let mut candidates: Vec<&str> = view.arguments.iter().map(|(n, _)| n.as_str()).collect();
+        candidates.extend(scope.definitions.keys().map(String::as_str));
+        candidates.extend(scope.imports.keys().map(String::as_str));
+        candidates.extend(scope.parameters.keys().map(String::as_str));
+        let operators = [
+            format!("d{}", self.periodic),
+            format!("absd{}", self.periodic),
+            self.coordinate.as_ref().map_or(String::new(), |c| format!("d{c}")),
+        ];
+        if view.scope == 0 {
+            candidates.extend(self.fields.keys().map(String::as_str));
+            candidates.extend(self.laws.keys().map(String::as_str));
+            candidates.extend(self.parameters.iter().map(|p| p.name.as_str()));
+            candidates.extend(operators.iter().map(String::as_str));
+            candidates.push("dt");
+        }
+        candidates.extend(Function::ALL.iter().map(|f| f.name()));
+        candidates.push("sqrt");
+        candidates.sort_unstable();
+        let mut hint = nearest(name, candidates).map(|n| format!("did you mean `{n}`?"));
+        if name == "k" || name == format!("k_{}", self.periodic) || name == "kx" {
+            hint = Some(format!(
+                "a wavenumber may not be used here: write d{0}(q) or absd{0}(q)",
+                self.periodic
+            ));
+        }
+        let expected = "a field, a parameter, a law or a definition";
+        Diagnostic::new(place.clone(), format!("`{name}` is not known"), expected).maybe_hint(hint)
+    }
+
+    /// The rational value of an expression in numbers alone.
+    pub fn constant(&mut self, expression: &Expression) -> Resolved<f64> {
+        let id = self.expression(expression, &View { scope: 0, context: Context::Constant, arguments: &[] });
+        let id = id?;
+        self.numeric(id).filter(|v| v.is_finite()).ok_or_else(|| {
+            Diagnostic::new(expression.location.clone(), "this is not a number", "a number")
+        })
+    }
+
+    /// The value of an expression without atoms.
+    fn numeric(&self, id: Id) -> Option<f64> {
+        match self.graph.node(id) {
+            Node::Number(value) => value.to_f64(),
+            Node::Pi => Some(std::f64::consts::PI),
+            Node::Sum(constant, terms) => terms.iter().try_fold(constant.to_f64()?, |sum, (t, c)| {
+                Some(sum + self.numeric(*t)? * c.to_f64()?)
+            }),
+            Node::Product(factors) => factors.iter().try_fold(1.0, |product, (b, e)| {
+                Some(product * self.numeric(*b)?.powf(e.to_f64()?))
+            }),
+            _ => None,
+        }
+    }
+
+    fn constant_parameter(&mut self, item: &ParameterItem) -> Option<Parameter> {
+        self.parameter(item).ok()
+    }
+
+    /// A declared parameter.
+    pub fn parameter(&mut self, item: &ParameterItem) -> Resolved<Parameter> {
+        let (mut lower, mut upper, mut choices) = (f64::NEG_INFINITY, f64::INFINITY, Vec::new());
+        match &item.domain {
+            ParameterDomain::Any => {}
+            ParameterDomain::Range(from, to) => {
+                lower = from.as_ref().map_or(Ok(lower), |e| self.constant(e))?;
+                upper = to.as_ref().map_or(Ok(upper), |e| self.constant(e))?;
+            }
+            ParameterDomain::Choices(names) => {
+                choices = names.iter().map(|n| n.text.clone()).collect();
+                upper = choices.len() as f64 - 1.0;
+                lower = 0.0;
+            }
+        }
+        let default = match &item.default {
+            Some(ParameterDefault::Value(value)) => self.constant(value)?,
+            Some(ParameterDefault::Choice(choice)) => {
+                match choices.iter().position(|c| *c == choice.text) {
+                    Some(position) => position as f64,
+                    None => {
+                        let message = format!("`{}` is not one of the choices", choice.text);
+                        let near = nearest(&choice.text, choices.iter().map(String::as_str));
+                        return Err(Diagnostic::new(choice.location.clone(), message, format!("one of {}", choices.join(", ")))
+                            .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
+                    }
+                }
+            }
+            None => {
+                let message = format!("the parameter `{}` has no default value", item.name.text);
+                return Err(Diagnostic::new(item.name.location.clone(), message, format!("`{} = value`", item.name.text)));
+            }
+        };
+        if !(lower..=upper).contains(&default) {
+            let message = format!("the default {default} lies outside {lower}..{upper}");
+            return Err(Diagnostic::new(item.name.location.clone(), message, format!("a default in {lower}..{upper}")));
+        }
+        let (name, doc) = (item.name.text.clone(), item.doc.clone());
+        Ok(Parameter { name, doc, default, lower, upper, choices, location: item.name.location.clone() })
+    }
+}
+
+fn misplaced(place: &Location, name: &str, what: &str, context: Context) -> Diagnostic {
+    let expected = match context {
+        Context::Profile => "parameters and the cross-stream coordinate",
+        Context::Amplitude => "parameters and k",
+        _ => "parameters and numbers",
+    };
+    Diagnostic::new(place.clone(), format!("`{name}` is {what}, which has no place here"), expected)
+}
+
+/// Whether a rational is two.
+pub(super) fn is_two(value: &Rational) -> bool {
+    *value == Rational::one() + Rational::one()
+}

@@ -1,0 +1,486 @@
+//! Each block of the spec, checked and made part of the model.
+
+use super::resolve::{Imported, beginning, bind_imports, check_name, twice, view};
+use super::scope::{Context, Names, Resolved, is_two};
+use super::*;
+use crate::diagnostic::{Diagnostic, nearest};
+use crate::graph::{Jet, Node, Operator};
+use crate::syntax::tree::*;
+
+/// More fields than any model needs (jets count them in a byte).
+const MOST_FIELDS: usize = 14;
+
+/// Collects mistakes and goes on.
+fn keep<T>(result: Resolved<T>, mistakes: &mut Vec<Diagnostic>) -> Option<T> {
+    result.map_err(|mistake| mistakes.push(mistake)).ok()
+}
+
+/// The whole model; `None` where nothing sensible could be made of it.
+pub(super) fn model(
+    tree: &ModelTree,
+    imported: &[Imported],
+    names: &mut Names,
+    mistakes: &mut Vec<Diagnostic>,
+) -> Option<Model> {
+    let Some(name) = &tree.name else {
+        let message = "the model has no name";
+        mistakes.push(Diagnostic::new(beginning(), message, "`model name \"title\";`"));
+        return None;
+    };
+    coordinate_names(tree, names, mistakes);
+    parameters(tree, names, mistakes);
+    let fields = fields(tree, names, mistakes);
+    for definition in tree.definitions.iter().filter(|d| !d.is_law) {
+        declare(definition, names, mistakes);
+    }
+    let mut laws = bind_imports(imported, names, mistakes);
+    for definition in tree.definitions.iter().filter(|d| d.is_law) {
+        laws.extend(law(definition, laws.len(), names, mistakes));
+    }
+    let interval = interval(tree, names, mistakes);
+    let balances = tree.balances.iter().filter_map(|b| keep(balance(b, names), mistakes)).collect();
+    let ends = interval.as_ref().map(|i| (i.lower, i.upper));
+    let base = base(&tree.base, fields.len(), ends, names, mistakes);
+    let mut boundary = Vec::new();
+    for wall in &tree.boundary {
+        wall_conditions(wall, ends, names, mistakes, &mut boundary);
+    }
+    let mean = tree.mean.iter().filter_map(|m| keep(mean(m, names), mistakes)).collect();
+    let amplitude = keep(amplitude(tree.amplitude.as_ref(), &fields, names), mistakes);
+    let outputs = tree.outputs.iter().filter_map(|o| keep(output(o, names), mistakes)).collect();
+    for item in &names.scopes[0].definitions.values().cloned().collect::<Vec<_>>() {
+        check_definition(item, names, mistakes);
+    }
+    for (parameter, used) in names.parameters.iter().zip(&names.used) {
+        if !used {
+            let message = format!("the parameter `{}` is never used", parameter.name);
+            let expected = "a parameter that some expression uses";
+            mistakes.push(Diagnostic::new(parameter.location.clone(), message, expected));
+        }
+    }
+    Some(Model {
+        name: name.text.clone(),
+        title: tree.title.clone(),
+        periodic: names.periodic.clone(),
+        interval,
+        parameters: std::mem::take(&mut names.parameters),
+        fields,
+        laws,
+        balances,
+        base,
+        boundary,
+        mean,
+        amplitude: amplitude?,
+        outputs,
+        sources: names.files.clone(),
+        graph: std::mem::take(&mut names.graph),
+    })
+}
+
+fn coordinate_names(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
+    let (periodic, bounded): (Vec<_>, Vec<_>) =
+        tree.coordinates.iter().partition(|c| c.interval.is_none());
+    match periodic.as_slice() {
+        [one] => names.periodic = one.name.text.clone(),
+        [] => mistakes.push(Diagnostic::new(
+            beginning(),
+            "there is no periodic coordinate",
+            "`coordinates { x: periodic; }`",
+        )),
+        [_, second, ..] => mistakes.push(Diagnostic::new(
+            second.name.location.clone(),
+            "there are two periodic coordinates",
+            "one periodic coordinate",
+        )),
+    }
+    if let Some(first) = bounded.first() {
+        names.coordinate = Some(first.name.text.clone());
+    }
+    if let Some(second) = bounded.get(1) {
+        let message = "there are two cross-stream coordinates";
+        mistakes.push(Diagnostic::new(second.name.location.clone(), message, "at most one"));
+    }
+}
+
+fn interval(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) -> Option<Interval> {
+    let item = tree.coordinates.iter().find(|c| c.interval.is_some())?;
+    let (lower, upper) = item.interval.as_ref()?;
+    let lower = keep(names.resolve(lower, Context::Constant), mistakes)?;
+    let upper = keep(names.resolve(upper, Context::Constant), mistakes)?;
+    if lower == upper {
+        let message = "the interval is empty";
+        mistakes.push(Diagnostic::new(item.name.location.clone(), message, "two different ends"));
+    }
+    Some(Interval { name: item.name.text.clone(), lower, upper })
+}
+
+fn parameters(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
+    for item in &tree.parameters {
+        keep(check_name(&item.name), mistakes);
+        if names.parameters.iter().any(|p| p.name == item.name.text) {
+            mistakes.push(twice(&item.name));
+            continue;
+        }
+        if let Some(parameter) = keep(names.parameter(item), mistakes) {
+            names.parameters.push(parameter);
+            names.used.push(false);
+        }
+    }
+}
+
+fn fields(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) -> Vec<Field> {
+    let mut fields = Vec::new();
+    let unknowns = tree.mean.iter().filter_map(|item| match item {
+        MeanItem::Unknown(name, _) => Some((name, true, None, String::new())),
+        _ => None,
+    });
+    let profiles = tree.fields.iter().map(|f| (&f.name, false, f.range.as_ref(), f.doc.clone()));
+    for (name, uniform, range, doc) in profiles.chain(unknowns) {
+        keep(check_name(name), mistakes);
+        let taken = names.parameters.iter().any(|p| p.name == name.text)
+            || names.fields.contains_key(&name.text)
+            || names.coordinate.as_deref() == Some(&name.text)
+            || names.periodic == name.text;
+        if taken {
+            mistakes.push(twice(name));
+            continue;
+        }
+        let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
+        if let Some((from, to)) = range {
+            if let Some(from) = from {
+                lower = keep(names.constant(from), mistakes).unwrap_or(lower);
+            }
+            if let Some(to) = to {
+                upper = keep(names.constant(to), mistakes).unwrap_or(upper);
+            }
+        }
+        names.fields.insert(name.text.clone(), fields.len());
+        let location = name.location.clone();
+        fields.push(Field { name: name.text.clone(), doc, lower, upper, uniform, location });
+    }
+    names.field_count = fields.len();
+    if fields.is_empty() || fields.len() > MOST_FIELDS {
+        let message = format!("the model has {} fields", fields.len());
+        mistakes.push(Diagnostic::new(beginning(), message, "1 to 14 fields: `fields { u; v; }`"));
+    }
+    fields
+}
+
+fn declare(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
+    keep(check_name(&definition.name), mistakes);
+    let text = &definition.name.text;
+    let taken = names.fields.contains_key(text)
+        || names.parameters.iter().any(|p| &p.name == text)
+        || names.operator(text).is_some();
+    let previous = names.scopes[0].definitions.insert(text.clone(), definition.clone());
+    if taken || previous.is_some() {
+        mistakes.push(twice(&definition.name));
+    }
+}
+
+fn law(
+    definition: &Definition,
+    index: usize,
+    names: &mut Names,
+    mistakes: &mut Vec<Diagnostic>,
+) -> Option<Law> {
+    keep(check_name(&definition.name), mistakes);
+    let text = definition.name.text.clone();
+    if names.laws.contains_key(&text) || names.fields.contains_key(&text) {
+        mistakes.push(twice(&definition.name));
+        return None;
+    }
+    if definition.arguments.is_some() {
+        let message = "a law of the model is a function of its fields";
+        let expected = format!("`law {text} = …`");
+        mistakes.push(
+            Diagnostic::new(definition.name.location.clone(), message, expected)
+                .hint("laws with arguments stand in a .law file"),
+        );
+        return None;
+    }
+    let body = keep(names.resolve(&definition.body, Context::Law), mistakes);
+    let body = body.unwrap_or_else(|| names.graph.zero());
+    names.laws.insert(text.clone(), index);
+    Some(Law { name: text, doc: definition.doc.clone(), body })
+}
+
+/// Definitions that no balance uses are read too, so that their mistakes show.
+fn check_definition(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
+    let count = definition.arguments.as_deref().unwrap_or_default().len();
+    let mut values = Vec::with_capacity(count);
+    for _ in 0..count {
+        values.push(names.graph.jet(Jet::value(0)));
+    }
+    let place = definition.name.location.clone();
+    // Nonlinear operators may reject the stand-in argument; names and arities are what counts here.
+    keep(names.expand(0, definition, &values, &place, Context::State), mistakes);
+}
+
+fn difference(equation: &Equation, names: &mut Names) -> Resolved<Id> {
+    let left = names.resolve(&equation.left, Context::State)?;
+    let right = names.resolve(&equation.right, Context::State)?;
+    Ok(names.graph.sub(left, right))
+}
+
+fn field_index(name: &Name, names: &Names) -> Resolved<usize> {
+    names.fields.get(&name.text).copied().ok_or_else(|| {
+        let mut fields: Vec<&str> = names.fields.keys().map(String::as_str).collect();
+        fields.sort_unstable();
+        let near = nearest(&name.text, fields.iter().copied());
+        let message = format!("`{}` is not a field", name.text);
+        Diagnostic::new(name.location.clone(), message, format!("one of {}", fields.join(", ")))
+            .maybe_hint(near.map(|n| format!("did you mean `{n}`?")))
+    })
+}
+
+fn balance(item: &BalanceItem, names: &mut Names) -> Resolved<Balance> {
+    let residual = difference(&item.equation, names)?;
+    let divisor = match &item.divide_by {
+        Some(divisor) => Some(names.resolve(divisor, Context::Law)?),
+        None => None,
+    };
+    let paired_field = match &item.paired_field {
+        Some(field) => Some(field_index(field, names)?),
+        None => None,
+    };
+    let (name, doc) = (item.name.text.clone(), item.doc.clone());
+    let location = Location { file: 0, range: item.name.location.range.clone() };
+    Ok(Balance { name, doc, residual, divisor, paired_field, location })
+}
+
+fn base(
+    block: &BaseBlock,
+    fields: usize,
+    ends: Option<(Id, Id)>,
+    names: &mut Names,
+    mistakes: &mut Vec<Diagnostic>,
+) -> Base {
+    let profiles = |items: &[(Name, Expression)], names: &mut Names, mistakes: &mut Vec<_>| {
+        let mut found = vec![None; fields];
+        for (name, expression) in items {
+            let Some(field) = keep(field_index(name, names), mistakes) else { continue };
+            if found[field].is_some() {
+                mistakes.push(twice(name));
+            }
+            found[field] = keep(names.resolve(expression, Context::Profile), mistakes);
+        }
+        found
+    };
+    let closed = profiles(&block.closed, names, mistakes);
+    let guesses = profiles(&block.guesses, names, mistakes);
+    let mut conditions = Vec::new();
+    for wall in &block.walls {
+        wall_conditions(wall, ends, names, mistakes, &mut conditions);
+    }
+    let integrals =
+        block.integrals.iter().filter_map(|i| keep(integral(i, names), mistakes)).collect();
+    let mut automatic = Vec::new();
+    for item in &block.automatic {
+        let condition = (|| {
+            let parameter = names.find_parameter(&item.parameter.text, 0).ok_or_else(|| {
+                let message = format!("`{}` is not a parameter", item.parameter.text);
+                Diagnostic::new(item.parameter.location.clone(), message, "the name of a parameter")
+            })?;
+            let end = end(&item.place, ends, names)?;
+            let residual = difference(&item.equation, names)?;
+            let location = item.equation.location.clone();
+            Ok((parameter, Condition { end, residual, guard: Vec::new(), location }))
+        })();
+        automatic.extend(keep(condition, mistakes));
+    }
+    let location = block.location.clone().unwrap_or_else(beginning);
+    Base { closed, guesses, conditions, integrals, automatic, location }
+}
+
+fn integral(item: &IntegralCondition, names: &mut Names) -> Resolved<Integral> {
+    let integrand = names.resolve(&item.integrand, Context::State)?;
+    let value = names.resolve(&item.value, Context::Constant)?;
+    Ok(Integral { integrand, value, location: item.location.clone() })
+}
+
+/// The end of the interval that `place` names.
+fn end(place: &Expression, ends: Option<(Id, Id)>, names: &mut Names) -> Resolved<End> {
+    let Some((lower, upper)) = ends else {
+        let message = "the model has no cross-stream coordinate";
+        return Err(Diagnostic::new(place.location.clone(), message, "no conditions at walls")
+            .hint("declare one: `coordinates { x: periodic; y: 0..H; }`"));
+    };
+    let id = names.resolve(place, Context::Constant)?;
+    if id == lower {
+        Ok(End::Lower)
+    } else if id == upper {
+        Ok(End::Upper)
+    } else {
+        let message = "this is not an end of the interval";
+        Err(Diagnostic::new(place.location.clone(), message, "an end as `coordinates` gives it"))
+    }
+}
+
+fn wall_conditions(
+    wall: &WallItem,
+    ends: Option<(Id, Id)>,
+    names: &mut Names,
+    mistakes: &mut Vec<Diagnostic>,
+    found: &mut Vec<Condition>,
+) {
+    if let Some(expected) = names.coordinate.clone().filter(|c| *c != wall.coordinate.text) {
+        let message = format!("`{}` is not the cross-stream coordinate", wall.coordinate.text);
+        let place = wall.coordinate.location.clone();
+        mistakes.push(Diagnostic::new(place, message, format!("`{expected}`")));
+        return;
+    }
+    if let Some(end) = keep(end(&wall.place, ends, names), mistakes) {
+        conditions(&wall.conditions, end, &[], names, mistakes, found);
+    }
+}
+
+fn conditions(
+    items: &[ConditionItem],
+    end: End,
+    guard: &[(usize, usize)],
+    names: &mut Names,
+    mistakes: &mut Vec<Diagnostic>,
+    found: &mut Vec<Condition>,
+) {
+    for item in items {
+        match item {
+            ConditionItem::Equation(equation) => {
+                let Some(residual) = keep(difference(equation, names), mistakes) else { continue };
+                let location = equation.location.clone();
+                if names.graph.any(residual, |n| matches!(n, Node::Derivative(Operator::Dt, _))) {
+                    let message = "`dt` has no place in a boundary condition";
+                    mistakes.push(Diagnostic::new(location, message, "a condition without `dt`"));
+                    continue;
+                }
+                found.push(Condition { end, residual, guard: guard.to_vec(), location });
+            }
+            ConditionItem::Select(switch, branches) => {
+                let place = switch.location.clone();
+                let resolved = names.branches(switch, branches, 0, &place);
+                let Some((parameter, order)) = keep(resolved, mistakes) else { continue };
+                for (choice, branch) in order.into_iter().enumerate() {
+                    let mut guard = guard.to_vec();
+                    guard.push((parameter, choice));
+                    conditions(&branches[branch].1, end, &guard, names, mistakes, found);
+                }
+            }
+        }
+    }
+}
+
+fn mean(item: &MeanItem, names: &mut Names) -> Resolved<Closure> {
+    Ok(match item {
+        MeanItem::Conserved(integrand) => Closure::Conserved {
+            location: integrand.location.clone(),
+            integrand: names.resolve(integrand, Context::State)?,
+        },
+        MeanItem::Gauge(name) => {
+            Closure::Gauge { field: field_index(name, names)?, location: name.location.clone() }
+        }
+        MeanItem::Unknown(name, condition) => Closure::Unknown {
+            field: field_index(name, names)?,
+            integral: integral(condition, names)?,
+        },
+    })
+}
+
+fn amplitude(
+    item: Option<&AmplitudeItem>,
+    fields: &[Field],
+    names: &mut Names,
+) -> Resolved<Amplitude> {
+    match item {
+        // Without a word of the user: ∫ Σ |q|² dy = 1.
+        None => {
+            let one = names.graph.one();
+            let profiles = (0..fields.len()).filter(|&f| !fields[f].uniform);
+            Ok(Amplitude::Integral { weights: profiles.map(|f| (f, one)).collect(), value: one })
+        }
+        Some(AmplitudeItem::Integral { integrand, value }) => {
+            let mut weights = Vec::new();
+            quadratic(integrand, None, names, &mut weights)?;
+            let value = names.resolve(value, Context::Amplitude)?;
+            Ok(Amplitude::Integral { weights, value })
+        }
+        Some(AmplitudeItem::Point { place, field, value }) => {
+            let place = match place {
+                Some(place) => Some(names.resolve(place, Context::Constant)?),
+                None => None,
+            };
+            let field = modulus_of(field, names)?;
+            let value = names.resolve(value, Context::Amplitude)?;
+            Ok(Amplitude::Point { field, place, value })
+        }
+    }
+}
+
+/// The terms weight · |field|² of a sum.
+fn quadratic(
+    expression: &Expression,
+    weight: Option<Id>,
+    names: &mut Names,
+    found: &mut Vec<(usize, Id)>,
+) -> Resolved<()> {
+    match &expression.kind {
+        ExpressionKind::Binary(Binary::Add, left, right) => {
+            quadratic(left, weight, names, found)?;
+            quadratic(right, weight, names, found)
+        }
+        ExpressionKind::Binary(Binary::Multiply, left, right) => {
+            let (factor, square) = if contains_modulus(right) { (left, right) } else { (right, left) };
+            let factor = names.expression(factor, &view(Context::Profile))?;
+            let weight = match weight {
+                Some(weight) => names.graph.mul(weight, factor),
+                None => factor,
+            };
+            quadratic(square, Some(weight), names, found)
+        }
+        ExpressionKind::Binary(Binary::Power, base, exponent)
+            if matches!(&exponent.kind, ExpressionKind::Number(two) if is_two(two)) =>
+        {
+            let field = modulus_of(base, names)?;
+            let one = names.graph.one();
+            found.push((field, weight.unwrap_or(one)));
+            Ok(())
+        }
+        _ => Err(Diagnostic::new(
+            expression.location.clone(),
+            "the amplitude is a sum of squared moduli",
+            "`weight*|field|^2`",
+        )),
+    }
+}
+
+fn contains_modulus(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Modulus(_) => true,
+        ExpressionKind::Binary(_, a, b) => contains_modulus(a) || contains_modulus(b),
+        ExpressionKind::Negative(inner) => contains_modulus(inner),
+        _ => false,
+    }
+}
+
+fn modulus_of(expression: &Expression, names: &mut Names) -> Resolved<usize> {
+    match &expression.kind {
+        ExpressionKind::Modulus(inner) => modulus_of(inner, names),
+        ExpressionKind::Name(text) => {
+            let name = Name { text: text.clone(), location: expression.location.clone() };
+            field_index(&name, names)
+        }
+        _ => Err(Diagnostic::new(
+            expression.location.clone(),
+            "the amplitude measures fields",
+            "`|field|` or the name of a field",
+        )),
+    }
+}
+
+fn output(item: &OutputItem, names: &mut Names) -> Resolved<Output> {
+    let place = match &item.place {
+        Some(place) => Some(names.resolve(place, Context::Constant)?),
+        None => None,
+    };
+    let body = names.resolve(&item.body, Context::State)?;
+    Ok(Output { name: item.name.text.clone(), doc: item.doc.clone(), place, body })
+}

@@ -1,0 +1,196 @@
+//! The precedence parser for expressions.
+//!
+//! `syn::Expr` reads `a * b^2 + c` as an exclusive or; this grammar is the mathematician's:
+//! `^` binds tightest and to the right, then unary minus, then `* /`, then `+ -`.
+
+use super::tree::{Binary, Expression, ExpressionKind, Name};
+use super::{Reader, spaced};
+use crate::diagnostic::{Diagnostic, Location};
+use crate::graph::Rational;
+use num_traits::Zero;
+use syn::Token;
+use syn::parse::ParseStream;
+
+type Parsed<T> = Result<T, Diagnostic>;
+
+/// Decimal exponents beyond this are typing errors.
+const LARGEST_EXPONENT: u32 = 400;
+
+impl Reader {
+    /// sum := product (('+' | '-') product)*
+    pub(super) fn expression(&self, input: ParseStream) -> Parsed<Expression> {
+        let mut left = self.product(input)?;
+        loop {
+            let operator = if input.peek(Token![+]) {
+                Binary::Add
+            } else if input.peek(Token![-]) {
+                Binary::Subtract
+            } else {
+                return Ok(left);
+            };
+            self.skip(input);
+            left = binary(operator, left, self.product(input)?);
+        }
+    }
+
+    /// product := unary (('*' | '/') unary)*
+    fn product(&self, input: ParseStream) -> Parsed<Expression> {
+        let mut left = self.unary(input)?;
+        loop {
+            let operator = if input.peek(Token![*]) {
+                Binary::Multiply
+            } else if input.peek(Token![/]) {
+                Binary::Divide
+            } else {
+                return Ok(left);
+            };
+            self.skip(input);
+            left = binary(operator, left, self.unary(input)?);
+        }
+    }
+
+    /// unary := '-'* power
+    fn unary(&self, input: ParseStream) -> Parsed<Expression> {
+        let mut signs = Vec::new();
+        while input.peek(Token![-]) || input.peek(Token![+]) {
+            signs.push((input.peek(Token![-]), self.here(input)));
+            self.skip(input);
+        }
+        let mut value = self.power(input)?;
+        for (negative, place) in signs.into_iter().rev() {
+            if negative {
+                let location = spaced(&place, &value.location);
+                value = Expression { kind: ExpressionKind::Negative(Box::new(value)), location };
+            }
+        }
+        Ok(value)
+    }
+
+    /// power := primary ('^' '-'? power)?
+    fn power(&self, input: ParseStream) -> Parsed<Expression> {
+        let base = self.primary(input)?;
+        if !input.peek(Token![^]) {
+            return Ok(base);
+        }
+        self.skip(input);
+        let exponent = if input.peek(Token![-]) {
+            let place = self.here(input);
+            self.skip(input);
+            let inner = self.power(input)?;
+            let location = spaced(&place, &inner.location);
+            Expression { kind: ExpressionKind::Negative(Box::new(inner)), location }
+        } else {
+            self.power(input)?
+        };
+        Ok(binary(Binary::Power, base, exponent))
+    }
+
+    fn primary(&self, input: ParseStream) -> Parsed<Expression> {
+        let location = self.here(input);
+        if input.peek(syn::token::Paren) {
+            let content = self.parenthesised(input)?;
+            let inner = self.expression(&content)?;
+            self.finished(&content, "an operator or `)`")?;
+            return Ok(Expression { kind: inner.kind, location });
+        }
+        if input.peek(Token![|]) {
+            self.skip(input);
+            let inner = self.expression(input)?;
+            let end = self.here(input);
+            self.punctuation(input, "|")?;
+            let location = spaced(&location, &end);
+            return Ok(Expression { kind: ExpressionKind::Modulus(Box::new(inner)), location });
+        }
+        if input.peek(syn::Lit) {
+            return self.number(input);
+        }
+        if !self.peek_name(input) {
+            return Err(self.unexpected(input, "a number, a name or `(`"));
+        }
+        let name = self.name(input, "a name")?;
+        if name.text == "select" && self.peek_name(input) {
+            return self.select(input, location);
+        }
+        if !input.peek(syn::token::Paren) {
+            return Ok(Expression { kind: ExpressionKind::Name(name.text), location });
+        }
+        let end = self.here(input);
+        let content = self.parenthesised(input)?;
+        let mut arguments = Vec::new();
+        while !content.is_empty() {
+            arguments.push(self.expression(&content)?);
+            if content.is_empty() {
+                break;
+            }
+            self.punctuation(&content, ",")?;
+        }
+        let location = spaced(&location, &end);
+        Ok(Expression { kind: ExpressionKind::Call(name, arguments), location })
+    }
+
+    fn select(&self, input: ParseStream, start: Location) -> Parsed<Expression> {
+        let switch = self.name(input, "the name of a switch parameter")?;
+        let end = self.here(input);
+        let content = self.braced(input)?;
+        let mut branches: Vec<(Name, Expression)> = Vec::new();
+        while !content.is_empty() {
+            let choice = self.name(&content, "a choice of the switch")?;
+            self.punctuation(&content, ":")?;
+            branches.push((choice, self.expression(&content)?));
+            if !content.is_empty() {
+                self.punctuation(&content, ",")?;
+            }
+        }
+        let kind = ExpressionKind::Select(switch, branches);
+        Ok(Expression { kind, location: spaced(&start, &end) })
+    }
+
+    fn number(&self, input: ParseStream) -> Parsed<Expression> {
+        let location = self.here(input);
+        let literal: syn::Lit = input.parse().map_err(|e| self.syntax_error(&e))?;
+        let (digits, suffix) = match &literal {
+            syn::Lit::Int(l) => (l.base10_digits().to_owned(), l.suffix().to_owned()),
+            syn::Lit::Float(l) => (l.base10_digits().to_owned(), l.suffix().to_owned()),
+            _ => {
+                let message = "this is not a number";
+                return Err(Diagnostic::new(location, message, "a number, a name or `(`"));
+            }
+        };
+        if !suffix.is_empty() {
+            let message = format!("`{digits}{suffix}` is not a number");
+            return Err(Diagnostic::new(location, message, "digits alone")
+                .hint(format!("write a product as {digits}*{suffix}")));
+        }
+        match decimal(&digits) {
+            Some(value) => Ok(Expression { kind: ExpressionKind::Number(value), location }),
+            None => {
+                let message = format!("`{digits}` is out of range");
+                Err(Diagnostic::new(location, message, "a decimal exponent of at most 400"))
+            }
+        }
+    }
+}
+
+fn binary(operator: Binary, left: Expression, right: Expression) -> Expression {
+    let location = spaced(&left.location, &right.location);
+    let kind = ExpressionKind::Binary(operator, Box::new(left), Box::new(right));
+    Expression { kind, location }
+}
+
+/// The exact rational value of a decimal literal.
+fn decimal(digits: &str) -> Option<Rational> {
+    let (mantissa, exponent) = match digits.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
+        None => (digits, 0),
+    };
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let shift = exponent - i32::try_from(fraction.len()).ok()?;
+    if shift.unsigned_abs() > LARGEST_EXPONENT || whole.len() > LARGEST_EXPONENT as usize {
+        return None;
+    }
+    let value: Rational = format!("{whole}{fraction}").parse().ok()?;
+    if value.is_zero() {
+        return Some(value);
+    }
+    Some(value * Rational::from_integer(10.into()).pow(shift))
+}

@@ -1,0 +1,427 @@
+//! The statements and blocks of a spec.
+
+use super::tree::*;
+use super::{Parsed, Reader, spaced};
+use crate::diagnostic::{Diagnostic, Location, nearest};
+use syn::Token;
+use syn::parse::ParseStream;
+
+const MODEL_ITEMS: [&str; 12] = [
+    "model", "use", "coordinates", "parameters", "fields", "let", "law", "balance", "base",
+    "boundary", "amplitude", "outputs",
+];
+const MEAN: &str = "mean";
+const LAW_ITEMS: [&str; 4] = ["use", "parameters", "let", "law"];
+
+impl Reader {
+    pub(super) fn model(&self, input: ParseStream) -> ModelTree {
+        let mut tree = ModelTree::default();
+        self.statements(input, |input| self.model_item(input, &mut tree));
+        tree
+    }
+
+    fn model_item(&self, input: ParseStream, tree: &mut ModelTree) -> Parsed<()> {
+        let keyword = self.name(input, "`balance`, `fields`, `let` or another item")?;
+        match keyword.text.as_str() {
+            "model" => {
+                tree.name = Some(self.name(input, "the name of the model")?);
+                tree.title = self.doc(input);
+                self.punctuation(input, ";")
+            }
+            "use" => self.import(input).map(|import| tree.imports.push(import)),
+            "coordinates" => self.block(input, |input| {
+                self.coordinate(input).map(|item| tree.coordinates.push(item))
+            }),
+            "parameters" => self
+                .block(input, |input| self.parameter(input).map(|item| tree.parameters.push(item))),
+            "fields" => self.block(input, |input| self.field(input).map(|i| tree.fields.push(i))),
+            "let" => self.definition(input, false).map(|item| tree.definitions.push(item)),
+            "law" => self.definition(input, true).map(|item| tree.definitions.push(item)),
+            "balance" => self
+                .block(input, |input| self.balance(input).map(|item| tree.balances.push(item))),
+            "base" => {
+                tree.base.location = Some(keyword.location);
+                self.block(input, |input| self.base_item(input, &mut tree.base))
+            }
+            "boundary" => {
+                self.block(input, |input| self.wall(input).map(|item| tree.boundary.push(item)))
+            }
+            MEAN => self.block(input, |input| self.mean(input).map(|item| tree.mean.push(item))),
+            "amplitude" => self.block(input, |input| {
+                tree.amplitude = Some(self.amplitude(input)?);
+                Ok(())
+            }),
+            "outputs" => {
+                self.block(input, |input| self.output(input).map(|item| tree.outputs.push(item)))
+            }
+            other => {
+                let mut items = MODEL_ITEMS.to_vec();
+                items.push(MEAN);
+                Err(unknown_item(&keyword.location, other, &items))
+            }
+        }
+    }
+
+    pub(super) fn laws(&self, input: ParseStream) -> LawTree {
+        let mut tree = LawTree::default();
+        self.statements(input, |input| {
+            let keyword = self.name(input, "`law`, `let`, `parameters` or `use`")?;
+            match keyword.text.as_str() {
+                "use" => self.import(input).map(|import| tree.imports.push(import)),
+                "parameters" => self.block(input, |input| {
+                    self.parameter(input).map(|item| tree.parameters.push(item))
+                }),
+                "let" => self.definition(input, false).map(|item| tree.definitions.push(item)),
+                "law" => self.definition(input, true).map(|item| tree.definitions.push(item)),
+                other => Err(unknown_item(&keyword.location, other, &LAW_ITEMS)),
+            }
+        });
+        tree
+    }
+
+    /// `use laws::file::{law, law(fields) as alias};`
+    fn import(&self, input: ParseStream) -> Parsed<Import> {
+        self.word(input, "laws")?;
+        self.punctuation(input, "::")?;
+        let file = self.name(input, "the name of a law file")?;
+        self.punctuation(input, "::")?;
+        let content = self.braced(input)?;
+        let mut items = Vec::new();
+        while !content.is_empty() {
+            let law = self.name(&content, "the name of a law")?;
+            let arguments = if content.peek(syn::token::Paren) {
+                Some(self.names(&content, "a field")?)
+            } else {
+                None
+            };
+            let alias = if self.peek_word(&content, "as") {
+                self.skip(&content);
+                self.name(&content, "the name to use in the model")?
+            } else {
+                law.clone()
+            };
+            items.push(ImportItem { law, arguments, alias });
+            if !content.is_empty() {
+                self.punctuation(&content, ",")?;
+            }
+        }
+        self.punctuation(input, ";")?;
+        Ok(Import { file, items })
+    }
+
+    /// `(name, name, …)`
+    fn names(&self, input: ParseStream, expected: &str) -> Parsed<Vec<Name>> {
+        let content = self.parenthesised(input)?;
+        let mut names = Vec::new();
+        while !content.is_empty() {
+            names.push(self.name(&content, expected)?);
+            if !content.is_empty() {
+                self.punctuation(&content, ",")?;
+            }
+        }
+        Ok(names)
+    }
+
+    /// `x: periodic;` or `y: lower..upper;`
+    fn coordinate(&self, input: ParseStream) -> Parsed<CoordinateItem> {
+        let name = self.name(input, "the name of a coordinate")?;
+        self.punctuation(input, ":")?;
+        let interval = if self.peek_word(input, "periodic") {
+            self.skip(input);
+            None
+        } else {
+            let lower = self.expression(input)?;
+            self.punctuation(input, "..")?;
+            Some((lower, self.expression(input)?))
+        };
+        self.punctuation(input, ";")?;
+        Ok(CoordinateItem { name, interval })
+    }
+
+    /// `name = default in domain "doc";`
+    fn parameter(&self, input: ParseStream) -> Parsed<ParameterItem> {
+        let name = self.name(input, "the name of a parameter")?;
+        let mut default = None;
+        if self.peek_punctuation(input, "=") {
+            self.punctuation(input, "=")?;
+            default = Some(self.expression(input)?);
+        }
+        let mut domain = ParameterDomain::Any;
+        if self.peek_word(input, "in") {
+            self.skip(input);
+            domain = if input.peek(syn::token::Brace) {
+                let content = self.braced(input)?;
+                let mut choices = Vec::new();
+                while !content.is_empty() {
+                    choices.push(self.name(&content, "a choice")?);
+                    if !content.is_empty() {
+                        self.punctuation(&content, ",")?;
+                    }
+                }
+                ParameterDomain::Choices(choices)
+            } else {
+                let (lower, upper) = self.range(input)?;
+                ParameterDomain::Range(lower, upper)
+            };
+        }
+        let doc = self.doc(input);
+        self.punctuation(input, ";")?;
+        let default = match (default, &domain) {
+            (Some(value), ParameterDomain::Choices(_)) => match value.kind {
+                ExpressionKind::Name(text) => {
+                    Some(ParameterDefault::Choice(Name { text, location: value.location }))
+                }
+                _ => {
+                    let message = "the default of a switch is one of its choices";
+                    return Err(Diagnostic::new(value.location, message, "the name of a choice"));
+                }
+            },
+            (value, _) => value.map(ParameterDefault::Value),
+        };
+        Ok(ParameterItem { name, default, domain, doc })
+    }
+
+    /// `lower..upper`, either end open.
+    fn range(&self, input: ParseStream) -> Parsed<(Option<Expression>, Option<Expression>)> {
+        let ends = |input: ParseStream| input.peek(Token![;]) || input.peek(syn::LitStr);
+        let lower = if input.peek(Token![..]) { None } else { Some(self.expression(input)?) };
+        self.punctuation(input, "..")?;
+        let upper = if ends(input) { None } else { Some(self.expression(input)?) };
+        Ok((lower, upper))
+    }
+
+    /// `name "doc" in range;`
+    fn field(&self, input: ParseStream) -> Parsed<FieldItem> {
+        let name = self.name(input, "the name of a field")?;
+        let mut doc = self.doc(input);
+        let range = if self.peek_word(input, "in") {
+            self.skip(input);
+            Some(self.range(input)?)
+        } else {
+            None
+        };
+        if doc.is_empty() {
+            doc = self.doc(input);
+        }
+        self.punctuation(input, ";")?;
+        Ok(FieldItem { name, range, doc })
+    }
+
+    /// `let name(arguments) "doc" = body;`
+    fn definition(&self, input: ParseStream, is_law: bool) -> Parsed<Definition> {
+        let name = self.name(input, "a name")?;
+        let arguments = if input.peek(syn::token::Paren) {
+            Some(self.names(input, "the name of an argument")?)
+        } else {
+            None
+        };
+        let doc = self.doc(input);
+        self.punctuation(input, "=")?;
+        let body = self.expression(input)?;
+        self.end_of_statement(input)?;
+        Ok(Definition { name, arguments, body, is_law, doc })
+    }
+
+    /// `name: left = right divide by q for field "doc";`
+    fn balance(&self, input: ParseStream) -> Parsed<BalanceItem> {
+        let name = self.name(input, "the name of a balance")?;
+        self.punctuation(input, ":")?;
+        let equation = self.equation(input)?;
+        let (mut divide_by, mut paired_field) = (None, None);
+        loop {
+            if self.peek_word(input, "divide") {
+                self.skip(input);
+                self.word(input, "by")?;
+                divide_by = Some(self.expression(input)?);
+            } else if self.peek_word(input, "for") {
+                self.skip(input);
+                paired_field = Some(self.name(input, "a field")?);
+            } else {
+                break;
+            }
+        }
+        let doc = self.doc(input);
+        self.end_of_statement(input)?;
+        Ok(BalanceItem { name, equation, divide_by, paired_field, doc })
+    }
+
+    fn end_of_statement(&self, input: ParseStream) -> Parsed<()> {
+        if input.peek(Token![;]) {
+            return self.punctuation(input, ";");
+        }
+        Err(self.unexpected(input, "an operator or `;`"))
+    }
+
+    /// `left = right`
+    fn equation(&self, input: ParseStream) -> Parsed<Equation> {
+        let left = self.expression(input)?;
+        if input.peek(Token![==]) {
+            let location = self.here(input);
+            return Err(Diagnostic::new(location, "`==` is not part of the language", "`=`"));
+        }
+        self.punctuation(input, "=")?;
+        let right = self.expression(input)?;
+        let location = spaced(&left.location, &right.location);
+        Ok(Equation { left, right, location })
+    }
+
+    fn base_item(&self, input: ParseStream, base: &mut BaseBlock) -> Parsed<()> {
+        if self.peek_word(input, "at") {
+            return self.wall(input).map(|wall| base.walls.push(wall));
+        }
+        if self.peek_word(input, "integral") {
+            return self.integral_condition(input).map(|item| base.integrals.push(item));
+        }
+        if self.peek_word(input, "guess") {
+            self.skip(input);
+            return self.block(input, |input| {
+                let field = self.name(input, "a field")?;
+                self.punctuation(input, "=")?;
+                base.guesses.push((field, self.expression(input)?));
+                self.end_of_statement(input)
+            });
+        }
+        if self.peek_word(input, "auto") {
+            self.skip(input);
+            let parameter = self.name(input, "a parameter")?;
+            return self.block(input, |input| {
+                let (_, place) = self.place(input)?;
+                self.punctuation(input, ":")?;
+                let equation = self.equation(input)?;
+                base.automatic.push(AutomaticItem {
+                    parameter: parameter.clone(),
+                    place,
+                    equation,
+                });
+                self.end_of_statement(input)
+            });
+        }
+        let field = self.name(input, "a field, `at`, `integral`, `auto` or `guess`")?;
+        self.punctuation(input, "=")?;
+        base.closed.push((field, self.expression(input)?));
+        self.end_of_statement(input)
+    }
+
+    /// `at y = place`
+    fn place(&self, input: ParseStream) -> Parsed<(Name, Expression)> {
+        self.word(input, "at")?;
+        let coordinate = self.name(input, "the cross-stream coordinate")?;
+        self.punctuation(input, "=")?;
+        Ok((coordinate, self.expression(input)?))
+    }
+
+    /// `at y = place { conditions }`
+    fn wall(&self, input: ParseStream) -> Parsed<WallItem> {
+        let (coordinate, place) = self.place(input)?;
+        let mut conditions = Vec::new();
+        self.block(input, |input| self.condition(input).map(|item| conditions.push(item)))?;
+        Ok(WallItem { coordinate, place, conditions })
+    }
+
+    fn condition(&self, input: ParseStream) -> Parsed<ConditionItem> {
+        if !self.peek_word(input, "select") {
+            let equation = self.equation(input)?;
+            self.end_of_statement(input)?;
+            return Ok(ConditionItem::Equation(equation));
+        }
+        self.skip(input);
+        let switch = self.name(input, "the name of a switch parameter")?;
+        let mut branches = Vec::new();
+        self.block(input, |input| {
+            let choice = self.name(input, "a choice of the switch")?;
+            let mut conditions = Vec::new();
+            self.block(input, |input| self.condition(input).map(|item| conditions.push(item)))?;
+            branches.push((choice, conditions));
+            Ok(())
+        })?;
+        Ok(ConditionItem::Select(switch, branches))
+    }
+
+    /// `integral(integrand) = value;`
+    fn integral_condition(&self, input: ParseStream) -> Parsed<IntegralCondition> {
+        let (integrand, start) = self.integral(input)?;
+        self.punctuation(input, "=")?;
+        let value = self.expression(input)?;
+        let location = spaced(&start, &value.location);
+        self.end_of_statement(input)?;
+        Ok(IntegralCondition { integrand, value, location })
+    }
+
+    /// `integral(integrand)`
+    fn integral(&self, input: ParseStream) -> Parsed<(Expression, Location)> {
+        let start = self.word(input, "integral")?;
+        let content = self.parenthesised(input)?;
+        let integrand = self.expression(&content)?;
+        self.finished(&content, "an operator or `)`")?;
+        Ok((integrand, start))
+    }
+
+    fn mean(&self, input: ParseStream) -> Parsed<MeanItem> {
+        let keyword = self.name(input, "`conserved`, `gauge` or `unknown`")?;
+        match keyword.text.as_str() {
+            "conserved" => {
+                let (integrand, _) = self.integral(input)?;
+                self.end_of_statement(input)?;
+                Ok(MeanItem::Conserved(integrand))
+            }
+            "gauge" => {
+                let field = self.name(input, "a field")?;
+                self.end_of_statement(input)?;
+                Ok(MeanItem::Gauge(field))
+            }
+            "unknown" => {
+                let name = self.name(input, "the name of the unknown")?;
+                self.punctuation(input, ":")?;
+                Ok(MeanItem::Unknown(name, self.integral_condition(input)?))
+            }
+            other => Err(unknown_item(&keyword.location, other, &["conserved", "gauge", "unknown"])),
+        }
+    }
+
+    fn amplitude(&self, input: ParseStream) -> Parsed<AmplitudeItem> {
+        if self.peek_word(input, "integral") {
+            let condition = self.integral_condition(input)?;
+            let (integrand, value) = (condition.integrand, condition.value);
+            return Ok(AmplitudeItem::Integral { integrand, value });
+        }
+        if self.peek_word(input, "at") {
+            let (_, place) = self.place(input)?;
+            let content = self.braced(input)?;
+            let Equation { left: field, right: value, .. } = self.equation(&content)?;
+            self.end_of_statement(&content)?;
+            self.finished(&content, "`}`")?;
+            return Ok(AmplitudeItem::Point { place: Some(place), field, value });
+        }
+        let Equation { left: field, right: value, .. } = self.equation(input)?;
+        self.end_of_statement(input)?;
+        Ok(AmplitudeItem::Point { place: None, field, value })
+    }
+
+    /// `name "doc" = integral(q);` or `name = at y = place: q;` or `name = q;`
+    fn output(&self, input: ParseStream) -> Parsed<OutputItem> {
+        let name = self.name(input, "the name of an output")?;
+        let doc = self.doc(input);
+        self.punctuation(input, "=")?;
+        let (place, body) = if self.peek_word(input, "at") {
+            let (_, place) = self.place(input)?;
+            self.punctuation(input, ":")?;
+            (Some(place), self.expression(input)?)
+        } else if self.peek_word(input, "integral") {
+            (None, self.integral(input)?.0)
+        } else {
+            (None, self.expression(input)?)
+        };
+        self.end_of_statement(input)?;
+        Ok(OutputItem { name, place, body, doc })
+    }
+}
+
+fn unknown_item(location: &Location, name: &str, items: &[&str]) -> Diagnostic {
+    let list: Vec<_> = items.iter().map(|item| format!("`{item}`")).collect();
+    Diagnostic::new(
+        location.clone(),
+        format!("`{name}` is not known here"),
+        format!("one of {}", list.join(", ")),
+    )
+    .maybe_hint(nearest(name, items.iter().copied()).map(|near| format!("did you mean `{near}`?")))
+}

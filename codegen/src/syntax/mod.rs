@@ -1,0 +1,266 @@
+//! Spec text → syntax tree.
+//!
+//! Tokens are Rust's (so that `proc_macro2` gives places in the text), the grammar is our own. A
+//! mistake ends the statement it stands in; parsing goes on with the next, so that one run reports
+//! many.
+
+mod expression;
+mod item;
+mod lexical;
+pub mod tree;
+
+use crate::diagnostic::{Diagnostic, Location};
+use std::cell::RefCell;
+use syn::ext::IdentExt;
+use syn::parse::{ParseBuffer, ParseStream, Parser};
+use tree::{LawTree, ModelTree, Name};
+
+/// Parses a `.model` file; `file` is its index in the list of sources.
+pub fn parse_model(file: usize, text: &str) -> (ModelTree, Vec<Diagnostic>) {
+    parse(file, text, Reader::model)
+}
+
+/// Parses a `.law` file.
+pub fn parse_laws(file: usize, text: &str) -> (LawTree, Vec<Diagnostic>) {
+    parse(file, text, Reader::laws)
+}
+
+fn parse<T: Default>(
+    file: usize,
+    text: &str,
+    grammar: impl FnOnce(&Reader, ParseStream) -> T,
+) -> (T, Vec<Diagnostic>) {
+    let mistakes = lexical::check(file, text);
+    if !mistakes.is_empty() {
+        return (T::default(), mistakes);
+    }
+    let reader = Reader { file, length: text.len(), mistakes: RefCell::new(Vec::new()) };
+    let tokens: proc_macro2::TokenStream = match text.parse() {
+        Ok(tokens) => tokens,
+        Err(error) => {
+            let error: proc_macro2::LexError = error;
+            let location = reader.location(error.span());
+            let message = "this is not part of the language";
+            return (T::default(), vec![Diagnostic::new(location, message, "a name, a number or an operator")]);
+        }
+    };
+    let mut tree = T::default();
+    let outcome = Parser::parse2(
+        |input: ParseStream| {
+            tree = grammar(&reader, input);
+            Ok(())
+        },
+        tokens,
+    );
+    // syn repeats here what the reader has reported already, if in vaguer words.
+    if let (Err(error), true) = (outcome, reader.mistakes.borrow().is_empty()) {
+        reader.report(reader.syntax_error(&error));
+    }
+    (tree, reader.mistakes.into_inner())
+}
+
+/// One file being read.
+struct Reader {
+    file: usize,
+    length: usize,
+    mistakes: RefCell<Vec<Diagnostic>>,
+}
+
+type Parsed<T> = Result<T, Diagnostic>;
+
+impl Reader {
+    fn report(&self, mistake: Diagnostic) {
+        self.mistakes.borrow_mut().push(mistake);
+    }
+
+    fn location(&self, span: proc_macro2::Span) -> Location {
+        let range = span.byte_range();
+        // Past the last token, syn answers with an empty call-site span.
+        let range = if range.is_empty() && range.start == 0 { self.length..self.length } else { range };
+        Location { file: self.file, range }
+    }
+
+    /// The place of the next token, or of the end of the enclosing block.
+    fn here(&self, input: ParseStream) -> Location {
+        let mut location = self.location(input.span());
+        if input.is_empty() {
+            location.range.end = location.range.end.min(location.range.start + 1);
+        }
+        location
+    }
+
+    fn syntax_error(&self, error: &syn::Error) -> Diagnostic {
+        Diagnostic::new(self.location(error.span()), error.to_string(), "this is not expected here")
+    }
+
+    fn unexpected(&self, input: ParseStream, expected: &str) -> Diagnostic {
+        let location = self.here(input);
+        let message = if input.is_empty() {
+            "the statement ends too early".to_owned()
+        } else {
+            let token = input.cursor().token_tree().map(|(t, _)| match t {
+                proc_macro2::TokenTree::Group(group) => match group.delimiter() {
+                    proc_macro2::Delimiter::Brace => "{".to_owned(),
+                    proc_macro2::Delimiter::Bracket => "[".to_owned(),
+                    _ => "(".to_owned(),
+                },
+                other => other.to_string(),
+            });
+            format!("`{}` is not expected here", token.unwrap_or_default())
+        };
+        let mut location = location;
+        if input.peek(syn::token::Brace) || input.peek(syn::token::Bracket) {
+            location.range.end = location.range.start + 1;
+        }
+        Diagnostic::new(location, message, expected)
+    }
+
+    /// Consumes one token tree.
+    fn skip(&self, input: ParseStream) {
+        // A ParseStream over a non-empty cursor always yields a token tree.
+        let _ = input.parse::<proc_macro2::TokenTree>();
+    }
+
+    /// Consumes the rest of a statement: to just after the next `;` or `{ … }`.
+    fn recover(&self, input: ParseStream) {
+        while !input.is_empty() {
+            let ends = input.peek(syn::Token![;]) || input.peek(syn::token::Brace);
+            self.skip(input);
+            if ends {
+                break;
+            }
+        }
+    }
+
+    /// Consumes everything that is left.
+    fn drain(&self, input: ParseStream) {
+        while !input.is_empty() {
+            self.skip(input);
+        }
+    }
+
+    fn peek_name(&self, input: ParseStream) -> bool {
+        input.peek(syn::Ident::peek_any)
+    }
+
+    /// Whether the next token is this word.
+    fn peek_word(&self, input: ParseStream, word: &str) -> bool {
+        input.cursor().ident().is_some_and(|(ident, _)| ident == word)
+    }
+
+    fn name(&self, input: ParseStream, expected: &str) -> Parsed<Name> {
+        let location = self.here(input);
+        match input.call(syn::Ident::parse_any) {
+            Ok(ident) => Ok(Name { text: ident.to_string(), location }),
+            Err(_) => Err(self.unexpected(input, expected)),
+        }
+    }
+
+    /// Consumes this word.
+    fn word(&self, input: ParseStream, word: &str) -> Parsed<Location> {
+        if self.peek_word(input, word) {
+            let location = self.here(input);
+            self.skip(input);
+            Ok(location)
+        } else {
+            Err(self.unexpected(input, &format!("`{word}`")))
+        }
+    }
+
+    /// Consumes punctuation of one or two characters.
+    fn punctuation(&self, input: ParseStream, mark: &str) -> Parsed<()> {
+        let mut cursor = input.cursor();
+        for expected in mark.chars() {
+            match cursor.punct() {
+                Some((punct, rest)) if punct.as_char() == expected => cursor = rest,
+                _ => return Err(self.unexpected(input, &format!("`{mark}`"))),
+            }
+        }
+        for _ in mark.chars() {
+            self.skip_punct(input);
+        }
+        Ok(())
+    }
+
+    fn peek_punctuation(&self, input: ParseStream, mark: &str) -> bool {
+        let mut cursor = input.cursor();
+        mark.chars().all(|expected| match cursor.punct() {
+            Some((punct, rest)) if punct.as_char() == expected => {
+                cursor = rest;
+                true
+            }
+            _ => false,
+        })
+    }
+
+    fn skip_punct(&self, input: ParseStream) {
+        let _ = input.parse::<proc_macro2::Punct>();
+    }
+
+    fn parenthesised<'a>(&self, input: &ParseBuffer<'a>) -> Parsed<ParseBuffer<'a>> {
+        let result = (|| -> syn::Result<ParseBuffer<'a>> {
+            let content;
+            let _ = syn::parenthesized!(content in input);
+            Ok(content)
+        })();
+        result.map_err(|_| self.unexpected(input, "`(`"))
+    }
+
+    fn braced<'a>(&self, input: &ParseBuffer<'a>) -> Parsed<ParseBuffer<'a>> {
+        let result = (|| -> syn::Result<ParseBuffer<'a>> {
+            let content;
+            let _ = syn::braced!(content in input);
+            Ok(content)
+        })();
+        result.map_err(|_| self.unexpected(input, "`{`"))
+    }
+
+    /// Reports what is left over.
+    fn finished(&self, input: ParseStream, expected: &str) -> Parsed<()> {
+        if input.is_empty() {
+            return Ok(());
+        }
+        let mistake = self.unexpected(input, expected);
+        self.drain(input);
+        Err(mistake)
+    }
+
+    /// Reads statements until the block ends, going on after each mistake.
+    fn statements(&self, input: ParseStream, mut statement: impl FnMut(ParseStream) -> Parsed<()>) {
+        while !input.is_empty() {
+            let before = input.cursor();
+            if let Err(mistake) = statement(input) {
+                self.report(mistake);
+                self.recover(input);
+            } else if input.cursor() == before {
+                self.skip(input);
+            }
+        }
+    }
+
+    /// Reads a braced block of statements.
+    fn block(
+        &self,
+        input: ParseStream,
+        statement: impl FnMut(ParseStream) -> Parsed<()>,
+    ) -> Parsed<()> {
+        let content = self.braced(input)?;
+        self.statements(&content, statement);
+        Ok(())
+    }
+
+    /// An optional doc string.
+    fn doc(&self, input: ParseStream) -> String {
+        if input.peek(syn::LitStr) {
+            if let Ok(text) = input.parse::<syn::LitStr>() {
+                return text.value();
+            }
+        }
+        String::new()
+    }
+}
+
+/// From the start of one place to the end of another.
+fn spaced(start: &Location, end: &Location) -> Location {
+    Location { file: start.file, range: start.range.start..end.range.end.max(start.range.end) }
+}
