@@ -1,0 +1,10 @@
+pub mod model;
+pub mod base;
+pub mod collocation;
+pub mod dense;
+pub mod error;
+pub mod parameters;
+pub mod problem;
+pub mod spectrum;
+pub mod weakly;
+pub use model::Model;

@@ -1,0 +1,205 @@
+//! The base state: in closed form, or by Newton's method on the emitted residual.
+
+mod newton;
+mod state;
+
+pub use state::BaseState;
+
+use crate::error::{Error, Result};
+use crate::model::{KernelId, Model, evaluate};
+use crate::parameters::Parameters;
+use newton::{Failure, Newton};
+
+/// Degrees tried until the Chebyshev coefficients have died out.
+const DEGREES: [usize; 7] = [36, 54, 80, 120, 180, 270, 400];
+/// A profile whose last coefficients are smaller than this fraction of the largest is resolved.
+const RESOLVED: f64 = 1e-13;
+/// Beyond this fraction at the highest degree the profile counts as unresolved.
+const UNRESOLVED: f64 = 1e-9;
+/// Smallest step of the continuation in parameters, as a fraction of the way.
+const SMALLEST_STEP: f64 = 1.0 / 128.0;
+
+/// The base state at the given parameters, those set to `auto` determined on the way.
+///
+/// # Errors
+/// Says which computation failed and where, and what to try.
+pub fn solve(model: &dyn Model, parameters: &Parameters) -> Result<BaseState> {
+    solve_near(model, parameters, None)
+}
+
+/// Like [`solve`], starting from a neighbouring state where there is one.
+pub fn solve_near(
+    model: &dyn Model,
+    parameters: &Parameters,
+    near: Option<&BaseState>,
+) -> Result<BaseState> {
+    if parameters.automatic.iter().any(|a| *a) {
+        return determine(model, parameters, near);
+    }
+    check_interval(model, parameters)?;
+    let structure = model.structure();
+    if structure.base.solved.is_empty() {
+        let state = BaseState::closed(model, parameters);
+        state.check_closed(model)?;
+        return Ok(state);
+    }
+    let start = near.filter(|state| state.case == parameters.case(structure));
+    let newton = Newton { model, parameters };
+    if let Ok(state) = newton.refine(start, &DEGREES) {
+        return finish(model, state);
+    }
+    let state = continuation(model, parameters, start)?;
+    finish(model, state)
+}
+
+fn check_interval(model: &dyn Model, parameters: &Parameters) -> Result<()> {
+    let (lower, upper) = state::interval(model, parameters);
+    if lower.is_finite() && upper.is_finite() && upper > lower {
+        return Ok(());
+    }
+    Err(Error::input(format!("the interval {lower}..{upper} is empty: its upper end must lie above its lower end")))
+}
+
+fn finish(model: &dyn Model, state: BaseState) -> Result<BaseState> {
+    let tail = state.tail();
+    if tail > UNRESOLVED {
+        return Err(Error::computation(format!(
+            "the base state is not resolved with {} Chebyshev polynomials (relative tail {tail:.1e}); \
+             try a smaller interval or milder parameters",
+            state.degree
+        )));
+    }
+    state.check_ranges(model)?;
+    Ok(state)
+}
+
+/// From a state that can be found to the one that is asked for, in steps that adapt.
+fn continuation(
+    model: &dyn Model,
+    target: &Parameters,
+    near: Option<&BaseState>,
+) -> Result<BaseState> {
+    let structure = model.structure();
+    let mut start = Parameters::defaults(structure);
+    // Switches are set at once: there is nothing between two choices.
+    for (index, info) in structure.parameters.iter().enumerate() {
+        if !info.choices.is_empty() {
+            start.values[index] = target.values[index];
+        }
+    }
+    let mut state = match near {
+        Some(state) => {
+            start = state.parameters.clone();
+            state.clone()
+        }
+        None => Newton { model, parameters: &start }
+            .refine(None, &DEGREES)
+            .map_err(|failure| describe(model, &start, &failure, "at the default parameters"))?,
+    };
+    let at = |fraction: f64| {
+        let mut parameters = target.clone();
+        for (value, (from, to)) in
+            parameters.values.iter_mut().zip(start.values.iter().zip(&target.values))
+        {
+            // Positive parameters move by ratio, so that a decade is one stretch.
+            *value = if fraction == 1.0 {
+                *to
+            } else if *from > 0.0 && *to > 0.0 {
+                from * (to / from).powf(fraction)
+            } else {
+                from + fraction * (to - from)
+            };
+        }
+        parameters
+    };
+    let (mut done, mut step) = (0.0, 0.25_f64);
+    while done < 1.0 {
+        let fraction = (done + step).min(1.0);
+        let parameters = at(fraction);
+        match (Newton { model, parameters: &parameters }).refine(Some(&state), &DEGREES) {
+            Ok(next) => {
+                state = next;
+                done = fraction;
+                step *= 1.7;
+            }
+            Err(failure) => {
+                step *= 0.4;
+                if step < SMALLEST_STEP {
+                    return Err(describe(model, &parameters, &failure, "on the way from the default parameters"));
+                }
+            }
+        }
+    }
+    Ok(state)
+}
+
+fn describe(model: &dyn Model, parameters: &Parameters, failure: &Failure, place: &str) -> Error {
+    let structure = model.structure();
+    let values: Vec<String> = (0..structure.parameters.len())
+        .map(|i| format!("{} = {}", structure.parameters[i].name, parameters.shown(structure, i)))
+        .collect();
+    Error::computation(format!(
+        "Newton's method for the base state failed {place} ({failure}) at {}; \
+         try parameters nearer the defaults, or another `guess`",
+        values.join(", ")
+    ))
+}
+
+/// Newton's method on the automatic parameters, their derivative by differences.
+fn determine(
+    model: &dyn Model,
+    parameters: &Parameters,
+    near: Option<&BaseState>,
+) -> Result<BaseState> {
+    let structure = model.structure();
+    let unknown: Vec<usize> =
+        (0..parameters.values.len()).filter(|&i| parameters.automatic[i]).collect();
+    let mut current = parameters.clone();
+    current.automatic.fill(false);
+    if let Some(state) = near {
+        for &index in &unknown {
+            current.values[index] = state.parameters.values[index];
+        }
+    }
+    let conditions = |state: &BaseState| -> nalgebra::DVector<f64> {
+        let values = unknown.iter().map(|&index| {
+            let position = structure.base.automatic.iter().position(|a| a.parameter == index);
+            position.map_or(0.0, |position| {
+                let end = structure.base.automatic[position].end;
+                evaluate(model, KernelId::Automatic, &state.at_end(model, end))[position]
+            })
+        });
+        nalgebra::DVector::from_iterator(unknown.len(), values)
+    };
+    let mut state = solve_near(model, &current, near)?;
+    let mut residual = conditions(&state);
+    for _ in 0..80 {
+        let n = unknown.len();
+        let mut jacobian = nalgebra::DMatrix::zeros(n, n);
+        for (column, &index) in unknown.iter().enumerate() {
+            let mut moved = current.clone();
+            let step = 1e-6 * moved.values[index].abs().max(1e-3);
+            moved.values[index] += step;
+            let shifted = conditions(&solve_near(model, &moved, Some(&state))?);
+            jacobian.set_column(column, &((shifted - &residual) / step));
+        }
+        let Some(step) = jacobian.lu().solve(&(-&residual)) else { break };
+        let mut largest = 0.0_f64;
+        for (&index, &change) in unknown.iter().zip(step.iter()) {
+            let value = current.values[index];
+            let bound = 0.2 * value.abs().max(1e-3);
+            current.values[index] = value + change.clamp(-bound, bound);
+            largest = largest.max((change / value.abs().max(1e-300)).abs());
+        }
+        state = solve_near(model, &current, Some(&state))?;
+        residual = conditions(&state);
+        if largest < 1e-11 {
+            return Ok(state);
+        }
+    }
+    let names: Vec<&str> = unknown.iter().map(|&i| structure.parameters[i].name.as_str()).collect();
+    Err(Error::computation(format!(
+        "the condition that determines {} was not met; give a value instead of auto",
+        names.join(", ")
+    )))
+}

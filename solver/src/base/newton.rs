@@ -1,0 +1,330 @@
+//! Damped Newton iteration for the base state, collocated on Chebyshev points.
+//!
+//! A field whose balance has order q in it is a polynomial of degree N, its balance collocated at
+//! N+1−q Gauss points; wall and integral conditions make up the difference.
+
+use super::state::{BaseState, interval};
+use super::RESOLVED;
+use crate::collocation::{Grid, GridKind, clenshaw_curtis, coefficients};
+use crate::model::{BaseJet, End, KernelId, Model, evaluate};
+use crate::parameters::Parameters;
+use faer::Mat;
+use faer::linalg::solvers::Solve;
+use std::fmt;
+
+const MOST_ITERATIONS: usize = 40;
+const SMALLEST_DAMPING: f64 = 1e-3;
+/// Consecutive degrees at which the iteration may fail.
+const MOST_FAILURES: usize = 2;
+const CONVERGED: f64 = 1e-10;
+
+/// Why an iteration gave up.
+pub(super) enum Failure {
+    Damping { residual: f64 },
+    Iterations { residual: f64 },
+    NotFinite,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::Damping { residual } => write!(f, "no step reduces the residual {residual:.1e}"),
+            Failure::Iterations { residual } => {
+                write!(f, "residual {residual:.1e} after {MOST_ITERATIONS} iterations")
+            }
+            Failure::NotFinite => f.write_str("a law has no value at the starting point"),
+        }
+    }
+}
+
+pub(super) struct Newton<'a> {
+    pub model: &'a dyn Model,
+    pub parameters: &'a Parameters,
+}
+
+/// The discretised problem at one degree.
+struct Discrete<'a> {
+    newton: &'a Newton<'a>,
+    degree: usize,
+    lower: f64,
+    upper: f64,
+    case: usize,
+    /// First unknown of each solved field.
+    offsets: Vec<usize>,
+    size: usize,
+    /// Values at the unknowns' grid → derivatives at the points of each row, at the ends, and at
+    /// the grid itself.
+    rows: Vec<Matrices>,
+    ends: [Matrices; 2],
+    own: Matrices,
+}
+
+/// d^order/dξ^order for orders 0 to 2.
+type Matrices = Vec<Mat<f64>>;
+
+impl Newton<'_> {
+    /// The state at rising degree until its coefficients have died out.
+    pub fn refine(&self, start: Option<&BaseState>, degrees: &[usize]) -> Result<BaseState, Failure> {
+        // Without a cross-stream coordinate a profile is a number.
+        let degrees = if self.model.structure().coordinate.is_none() { &[0] } else { degrees };
+        let mut previous = start.cloned();
+        let (mut best, mut last, mut failures) = (None, Failure::NotFinite, 0);
+        let first = start.map_or(0, |s| degrees.iter().position(|&d| d >= s.degree).unwrap_or(0));
+        for &degree in &degrees[first.min(degrees.len() - 1)..] {
+            match self.solve(previous.as_ref(), degree) {
+                Ok(state) => {
+                    let resolved = state.tail() < RESOLVED;
+                    // Rounding sets a floor to the tail; beyond it more polynomials do not help.
+                    let stalled = best.as_ref().is_some_and(|b: &BaseState| {
+                        b.tail() < 1e-10 && state.tail() > 0.3 * b.tail()
+                    });
+                    if stalled {
+                        break;
+                    }
+                    previous = Some(state.clone());
+                    best = Some(state);
+                    if resolved {
+                        break;
+                    }
+                }
+                Err(failure) => {
+                    last = failure;
+                    failures += 1;
+                    if failures == MOST_FAILURES {
+                        break;
+                    }
+                }
+            }
+        }
+        best.ok_or(last)
+    }
+
+    fn solve(&self, start: Option<&BaseState>, degree: usize) -> Result<BaseState, Failure> {
+        let structure = self.model.structure();
+        let (lower, upper) = interval(self.model, self.parameters);
+        let mut offsets = Vec::new();
+        let mut size = 0;
+        for &field in &structure.base.solved {
+            offsets.push(size);
+            size += if structure.fields[field].uniform { 1 } else { degree + 1 };
+        }
+        let case = self.parameters.case(structure);
+        let grid = Grid::new(GridKind::Lobatto(degree + 1));
+        let to = |kind: GridKind| -> Matrices {
+            let points = Grid::new(kind);
+            (0..=2).map(|order| grid.derivative_on(&points, order)).collect()
+        };
+        let orders = structure.base.rows.iter().map(|row| row.order);
+        let rows = orders.map(|order| to(GridKind::Gauss(degree + 1 - order))).collect();
+        let ends = [to(GridKind::Lower), to(GridKind::Upper)];
+        let own = to(grid.kind);
+        let discrete =
+            Discrete { newton: self, degree, lower, upper, case, offsets, size, rows, ends, own };
+        discrete.iterate(discrete.initial(start))
+    }
+}
+
+impl Discrete<'_> {
+    fn model(&self) -> &dyn Model {
+        self.newton.model
+    }
+
+    fn grid(&self) -> Grid {
+        Grid::new(GridKind::Lobatto(self.degree + 1))
+    }
+
+    fn initial(&self, start: Option<&BaseState>) -> Vec<f64> {
+        let structure = self.model().structure();
+        let template = self.state(&vec![0.0; self.size], 0.0);
+        let grid = self.grid();
+        let mut values = vec![0.0; self.size];
+        for (i, &xi) in grid.nodes.iter().enumerate() {
+            let point = match start {
+                Some(state) => state.point(self.model(), xi, 0.0),
+                None => template.point(self.model(), xi, 0.0),
+            };
+            let guess = match start {
+                Some(_) => None,
+                None => Some(evaluate(self.model(), KernelId::Guess, &point)),
+            };
+            for (s, &field) in structure.base.solved.iter().enumerate() {
+                let value = match &guess {
+                    Some(guess) => guess[s],
+                    None => point[structure.base_position(field, 0)],
+                };
+                let position = self.offsets[s] + if structure.fields[field].uniform { 0 } else { i };
+                values[position] = value;
+            }
+        }
+        values
+    }
+
+    fn state(&self, values: &[f64], residual: f64) -> BaseState {
+        let structure = self.model().structure();
+        let series = structure
+            .base
+            .solved
+            .iter()
+            .zip(&self.offsets)
+            .map(|(&field, &offset)| {
+                if structure.fields[field].uniform {
+                    vec![values[offset]]
+                } else {
+                    coefficients(&values[offset..=offset + self.degree])
+                }
+            })
+            .collect();
+        BaseState {
+            parameters: self.newton.parameters.clone(),
+            case: self.case,
+            lower: self.lower,
+            upper: self.upper,
+            degree: self.degree,
+            series,
+            residual,
+        }
+    }
+
+    /// Residual and Jacobian, each row scaled by the size of its entries.
+    fn system(&self, values: &[f64]) -> Option<(Vec<f64>, Mat<f64>)> {
+        let model = self.model();
+        let structure = model.structure();
+        let state = self.state(values, 0.0);
+        let mut rows: Vec<(f64, Vec<f64>)> = Vec::with_capacity(self.size);
+        for (index, row) in structure.base.rows.iter().enumerate() {
+            let position: usize =
+                structure.base.rows[..index].iter().map(|r| 1 + r.jets.len()).sum();
+            let points = Grid::new(GridKind::Gauss(self.degree + 1 - row.order));
+            for (i, &xi) in points.nodes.iter().enumerate() {
+                let out = evaluate(model, KernelId::Base, &state.point(model, xi, 0.0));
+                let slopes = &out[position + 1..=position + row.jets.len()];
+                rows.push((out[position], self.jacobian_row(&row.jets, slopes, &self.rows[index], i)));
+            }
+        }
+        let case = &structure.cases[self.case];
+        for end in End::BOTH {
+            let matrices = &self.ends[usize::from(end == End::Upper)];
+            let point = state.at_end(model, end);
+            let out = evaluate(model, KernelId::BaseConditions(self.case), &point);
+            let mut position = 0;
+            for condition in &case.base_conditions {
+                let slopes = &out[position + 1..=position + condition.jets.len()];
+                if condition.end == end {
+                    rows.push((out[position], self.jacobian_row(&condition.jets, slopes, matrices, 0)));
+                }
+                position += 1 + condition.jets.len();
+            }
+        }
+        self.integral_rows(&state, &mut rows);
+        if rows.len() != self.size {
+            return None;
+        }
+        let mut residual = Vec::with_capacity(self.size);
+        let mut jacobian = Mat::<f64>::zeros(self.size, self.size);
+        for (i, (value, row)) in rows.into_iter().enumerate() {
+            let size = row.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+            if !size.is_finite() || !value.is_finite() || size == 0.0 {
+                return None;
+            }
+            residual.push(value / size);
+            for (j, entry) in row.into_iter().enumerate() {
+                jacobian[(i, j)] = entry / size;
+            }
+        }
+        Some((residual, jacobian))
+    }
+
+    fn integral_rows(&self, state: &BaseState, rows: &mut Vec<(f64, Vec<f64>)>) {
+        let model = self.model();
+        let structure = model.structure();
+        let weights = clenshaw_curtis(self.degree + 1);
+        let half = 0.5 * (self.upper - self.lower);
+        let mut position = 0;
+        for jets in &structure.base.integrals {
+            let (mut total, mut row) = (0.0, vec![0.0; self.size]);
+            for (i, &xi) in self.grid().nodes.iter().enumerate() {
+                let out = evaluate(model, KernelId::BaseIntegrals, &state.point(model, xi, 0.0));
+                let slopes = &out[position + 1..=position + jets.len()];
+                let weight = weights[i] * half;
+                total += weight * out[position];
+                if i == 0 {
+                    total -= out[position + jets.len() + 1];
+                }
+                for (entry, slope) in row.iter_mut().zip(self.jacobian_row(jets, slopes, &self.own, i)) {
+                    *entry += weight * slope;
+                }
+            }
+            rows.push((total, row));
+            position += jets.len() + 2;
+        }
+    }
+
+    fn jacobian_row(&self, jets: &[BaseJet], slopes: &[f64], matrices: &[Mat<f64>], i: usize) -> Vec<f64> {
+        let structure = self.model().structure();
+        let scale = 2.0 / (self.upper - self.lower);
+        let mut row = vec![0.0; self.size];
+        for (jet, &slope) in jets.iter().zip(slopes) {
+            let Some(s) = structure.base.solved.iter().position(|&f| f == jet.field) else { continue };
+            if structure.fields[jet.field].uniform {
+                row[self.offsets[s]] += slope;
+                continue;
+            }
+            let Some(matrix) = matrices.get(jet.order) else { continue };
+            let factor = slope * scale.powi(jet.order as i32);
+            for j in 0..=self.degree {
+                row[self.offsets[s] + j] += factor * matrix[(i, j)];
+            }
+        }
+        row
+    }
+
+    /// Whether a trial keeps the declared ranges, by values at the nodes.
+    fn admissible(&self, values: &[f64]) -> bool {
+        let structure = self.model().structure();
+        structure.base.solved.iter().zip(&self.offsets).all(|(&field, &offset)| {
+            let info = &structure.fields[field];
+            let count = if info.uniform { 1 } else { self.degree + 1 };
+            // Rounding may carry a profile that dies out a little below zero.
+            let slack = 1e-9;
+            values[offset..offset + count].iter().all(|&v| v > info.lower - slack && v < info.upper + slack)
+        })
+    }
+
+    fn iterate(&self, mut values: Vec<f64>) -> Result<BaseState, Failure> {
+        let (mut residual, mut jacobian) = self.system(&values).ok_or(Failure::NotFinite)?;
+        let norm = |r: &[f64]| r.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let mut size = norm(&residual);
+        for _ in 0..MOST_ITERATIONS {
+            let right = Mat::from_fn(self.size, 1, |i, _| -residual[i]);
+            let step = jacobian.partial_piv_lu().solve(&right);
+            let reach = (0..self.size).map(|i| step[(i, 0)].abs()).fold(0.0, f64::max);
+            let scale = values.iter().fold(1e-300_f64, |m, v| m.max(v.abs()));
+            if !reach.is_finite() {
+                return Err(Failure::NotFinite);
+            }
+            let mut damping = 1.0;
+            loop {
+                let trial: Vec<f64> =
+                    values.iter().enumerate().map(|(i, v)| v + damping * step[(i, 0)]).collect();
+                let outcome = if self.admissible(&trial) { self.system(&trial) } else { None };
+                if let Some((new_residual, new_jacobian)) = outcome {
+                    let new_size = norm(&new_residual);
+                    // Near the solution rounding may keep the residual from falling.
+                    let settled = reach < CONVERGED * scale;
+                    if new_size <= (1.0 - 0.25 * damping) * size || settled {
+                        (values, residual, jacobian, size) = (trial, new_residual, new_jacobian, new_size);
+                        if settled {
+                            return Ok(self.state(&values, size));
+                        }
+                        break;
+                    }
+                }
+                damping *= 0.5;
+                if damping < SMALLEST_DAMPING {
+                    return Err(Failure::Damping { residual: size });
+                }
+            }
+        }
+        Err(Failure::Iterations { residual: size })
+    }
+}

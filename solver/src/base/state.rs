@@ -1,0 +1,137 @@
+//! A base state: Chebyshev series of the solved fields, closed forms of the others.
+
+use crate::collocation::derivative_values;
+use crate::error::{Error, Result};
+use crate::model::{End, KernelId, Model, evaluate};
+use crate::parameters::Parameters;
+
+/// Places at which a closed base state is checked against its balances.
+const CHECKS: usize = 7;
+
+/// X⁰(y), evaluated to any derivative that kernels ask for.
+#[derive(Clone, Debug)]
+pub struct BaseState {
+    pub parameters: Parameters,
+    pub case: usize,
+    pub lower: f64,
+    pub upper: f64,
+    /// Degree of the series (0 where the base is in closed form).
+    pub degree: usize,
+    /// Chebyshev coefficients of each solved field, in the order of `solved`; one for a number.
+    pub series: Vec<Vec<f64>>,
+    /// Largest residual of the discretised base problem, relative to its terms.
+    pub residual: f64,
+}
+
+/// The ends of the interval at these parameters.
+pub(super) fn interval(model: &dyn Model, parameters: &Parameters) -> (f64, f64) {
+    let mut point = vec![0.0; model.structure().state_length()];
+    point[2..2 + parameters.values.len()].copy_from_slice(&parameters.values);
+    let ends = evaluate(model, KernelId::Interval, &point);
+    (ends[0], ends[1])
+}
+
+impl BaseState {
+    /// A base that is given in closed form.
+    pub(super) fn closed(model: &dyn Model, parameters: &Parameters) -> Self {
+        let (lower, upper) = interval(model, parameters);
+        let case = parameters.case(model.structure());
+        let parameters = parameters.clone();
+        BaseState { parameters, case, lower, upper, degree: 0, series: Vec::new(), residual: 0.0 }
+    }
+
+    /// y of a point ξ in [−1, 1].
+    pub fn y(&self, xi: f64) -> f64 {
+        // Exact at the ends.
+        0.5 * ((1.0 - xi) * self.lower + (1.0 + xi) * self.upper)
+    }
+
+    /// dξ/dy
+    pub fn scale(&self) -> f64 {
+        2.0 / (self.upper - self.lower)
+    }
+
+    /// The point state at ξ; see [`KernelId`] for its layout. `k` enters the amplitude alone.
+    pub fn point(&self, model: &dyn Model, xi: f64, k: f64) -> Vec<f64> {
+        let structure = model.structure();
+        let mut point = vec![0.0; structure.state_length()];
+        point[0] = self.y(xi);
+        point[1] = k;
+        point[2..2 + self.parameters.values.len()].copy_from_slice(&self.parameters.values);
+        let closed = evaluate(model, KernelId::Closed, &point);
+        let first = structure.base_position(0, 0);
+        point[first..].copy_from_slice(&closed);
+        for (&field, series) in structure.base.solved.iter().zip(&self.series) {
+            let mut scale = 1.0;
+            for (order, value) in
+                derivative_values(series, xi, structure.base_order).into_iter().enumerate()
+            {
+                point[structure.base_position(field, order)] = value * scale;
+                scale *= self.scale();
+            }
+        }
+        point
+    }
+
+    /// The point state at an end.
+    pub fn at_end(&self, model: &dyn Model, end: End) -> Vec<f64> {
+        let xi = if end == End::Lower { -1.0 } else { 1.0 };
+        self.point(model, xi, 0.0)
+    }
+
+    /// Size of the last Chebyshev coefficients, relative to the largest, of the worst field.
+    pub fn tail(&self) -> f64 {
+        let tail = |series: &Vec<f64>| {
+            let largest = series.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+            let last = series.iter().rev().take(3).fold(0.0_f64, |m, c| m.max(c.abs()));
+            if largest > 0.0 && series.len() > 3 { last / largest } else { 0.0 }
+        };
+        self.series.iter().map(tail).fold(0.0, f64::max)
+    }
+
+    /// A closed base has to satisfy the balances that do not vanish identically.
+    pub(super) fn check_closed(&self, model: &dyn Model) -> Result<()> {
+        let structure = model.structure();
+        for check in 0..CHECKS {
+            let xi = -1.0 + 2.0 * (check as f64 + 0.5) / CHECKS as f64;
+            let point = self.point(model, xi, 0.0);
+            let values = evaluate(model, KernelId::Base, &point);
+            let mut position = 0;
+            for row in &structure.base.rows {
+                let residual = values[position];
+                position += 1 + row.jets.len();
+                // NaN must not pass.
+                if !(residual.abs() < 1e-9) {
+                    return Err(Error::computation(format!(
+                        "the base state does not satisfy the balance `{}`: residual {residual:.3e} at {} = {}",
+                        structure.balances[row.balance],
+                        structure.coordinate.as_deref().unwrap_or("y"),
+                        point[0]
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Fields must stay in the ranges that the spec declares.
+    pub(super) fn check_ranges(&self, model: &dyn Model) -> Result<()> {
+        let structure = model.structure();
+        for step in 0..=64 {
+            let point = self.point(model, -1.0 + step as f64 / 32.0, 0.0);
+            for (field, info) in structure.fields.iter().enumerate() {
+                let value = point[structure.base_position(field, 0)];
+                let slack = 1e-9 * (1.0 + value.abs());
+                if !(value >= info.lower - slack && value <= info.upper + slack) {
+                    return Err(Error::computation(format!(
+                        "the base state leaves the range of `{}`: {value:.6e} at {} = {}",
+                        info.name,
+                        structure.coordinate.as_deref().unwrap_or("y"),
+                        point[0]
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+}

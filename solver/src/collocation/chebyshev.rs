@@ -1,0 +1,219 @@
+//! Chebyshev points on [−1, 1], barycentric interpolation and differentiation, Clenshaw–Curtis
+//! quadrature (Trefethen, Spectral Methods in MATLAB; Berrut & Trefethen 2004).
+
+use faer::Mat;
+use std::f64::consts::PI;
+
+/// A family of points; the number is the count of points.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum GridKind {
+    /// Zeros of T_n.
+    Gauss(usize),
+    /// Extrema of T_(n−1), ends included.
+    Lobatto(usize),
+    /// Extrema of T_(n+1) without the ends.
+    Interior(usize),
+    /// The lower end alone.
+    Lower,
+    /// The upper end alone.
+    Upper,
+    /// One point of a model without cross-stream coordinate.
+    Point,
+}
+
+/// Points in increasing order.
+#[derive(Clone, Debug)]
+pub struct Grid {
+    pub kind: GridKind,
+    pub nodes: Vec<f64>,
+}
+
+impl Grid {
+    pub fn new(kind: GridKind) -> Self {
+        let nodes = match kind {
+            GridKind::Gauss(n) => {
+                // −cos((2j+1)π/2n), written as a sine for symmetry to rounding
+                (0..n).map(|j| (PI * (2.0 * j as f64 + 1.0 - n as f64) / (2.0 * n as f64)).sin()).collect()
+            }
+            GridKind::Lobatto(n) => lobatto(n),
+            GridKind::Interior(n) => lobatto(n + 2)[1..=n].to_vec(),
+            GridKind::Lower => vec![-1.0],
+            GridKind::Upper => vec![1.0],
+            GridKind::Point => vec![0.0],
+        };
+        Grid { kind, nodes }
+    }
+
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// Barycentric weights up to a common factor.
+    fn weights(&self) -> Vec<f64> {
+        let n = self.len();
+        let alternate = |j: usize| if j % 2 == 0 { 1.0 } else { -1.0 };
+        (0..n)
+            .map(|j| match self.kind {
+                GridKind::Gauss(_) => alternate(j) * (1.0 - self.nodes[j] * self.nodes[j]).sqrt(),
+                GridKind::Interior(_) => alternate(j) * (1.0 - self.nodes[j] * self.nodes[j]),
+                GridKind::Lobatto(_) if j == 0 || j + 1 == n => 0.5 * alternate(j),
+                _ => alternate(j),
+            })
+            .collect()
+    }
+
+    /// The matrix of d^order/dξ^order at this grid's own nodes.
+    fn differentiation(&self, order: usize) -> Mat<f64> {
+        let n = self.len();
+        let weights = self.weights();
+        let mut previous = Mat::<f64>::identity(n, n);
+        // Welfert's recursion; diagonals by the negative-sum trick.
+        for m in 1..=order {
+            let mut next = Mat::<f64>::zeros(n, n);
+            for i in 0..n {
+                let mut sum = 0.0;
+                for j in 0..n {
+                    if i == j {
+                        continue;
+                    }
+                    let ratio = weights[j] / weights[i];
+                    let gap = self.nodes[i] - self.nodes[j];
+                    let entry = m as f64 / gap * (ratio * previous[(i, i)] - previous[(i, j)]);
+                    next[(i, j)] = entry;
+                    sum += entry;
+                }
+                next[(i, i)] = -sum;
+            }
+            previous = next;
+        }
+        previous
+    }
+
+    /// Interpolation from this grid to other points.
+    fn interpolation(&self, to: &[f64]) -> Mat<f64> {
+        let weights = self.weights();
+        let mut matrix = Mat::<f64>::zeros(to.len(), self.len());
+        for (i, &x) in to.iter().enumerate() {
+            if let Some(j) = self.nodes.iter().position(|&node| node == x) {
+                matrix[(i, j)] = 1.0;
+                continue;
+            }
+            let terms: Vec<f64> =
+                self.nodes.iter().zip(&weights).map(|(node, w)| w / (x - node)).collect();
+            let sum: f64 = terms.iter().sum();
+            for (j, term) in terms.iter().enumerate() {
+                matrix[(i, j)] = term / sum;
+            }
+        }
+        matrix
+    }
+
+    /// d^order/dξ^order of the interpolant, evaluated on another grid.
+    pub fn derivative_on(&self, to: &Grid, order: usize) -> Mat<f64> {
+        if self.len() == 1 {
+            let value = if order == 0 { 1.0 } else { 0.0 };
+            return Mat::from_fn(to.len(), 1, |_, _| value);
+        }
+        let differentiation = self.differentiation(order);
+        if self.kind == to.kind {
+            return differentiation;
+        }
+        &self.interpolation(&to.nodes) * &differentiation
+    }
+
+    /// Interpolation to arbitrary points of [−1, 1].
+    pub fn interpolate_to(&self, points: &[f64]) -> Mat<f64> {
+        if self.len() == 1 {
+            return Mat::from_fn(points.len(), 1, |_, _| 1.0);
+        }
+        self.interpolation(points)
+    }
+}
+
+fn lobatto(n: usize) -> Vec<f64> {
+    if n == 1 {
+        return vec![0.0];
+    }
+    let degree = (n - 1) as f64;
+    (0..n).map(|j| (PI * (2.0 * j as f64 - degree) / (2.0 * degree)).sin()).collect()
+}
+
+/// Clenshaw–Curtis weights for the n extrema on [−1, 1]: exact for polynomials of degree n − 1.
+pub fn clenshaw_curtis(n: usize) -> Vec<f64> {
+    if n == 1 {
+        return vec![2.0];
+    }
+    let degree = n - 1;
+    (0..n)
+        .map(|j| {
+            let theta = PI * j as f64 / degree as f64;
+            let mut sum = 1.0;
+            for m in 1..=degree / 2 {
+                let half = if 2 * m == degree { 1.0 } else { 2.0 };
+                sum -= half * (2.0 * m as f64 * theta).cos() / ((4 * m * m - 1) as f64);
+            }
+            let end = if j == 0 || j == degree { 1.0 } else { 2.0 };
+            end * sum / degree as f64
+        })
+        .collect()
+}
+
+/// Chebyshev coefficients of the interpolant through values at the extrema (increasing ξ).
+pub fn coefficients(values: &[f64]) -> Vec<f64> {
+    let n = values.len();
+    if n == 1 {
+        return values.to_vec();
+    }
+    let degree = n - 1;
+    (0..n)
+        .map(|m| {
+            let mut sum = 0.0;
+            for (j, value) in values.iter().enumerate() {
+                // ξ_j = −cos(jπ/degree), T_m(ξ_j) = cos(m (degree − j) π/degree)
+                let weight = if j == 0 || j == degree { 0.5 } else { 1.0 };
+                let phase = (m * (degree - j)) % (2 * degree);
+                sum += weight * value * (PI * phase as f64 / degree as f64).cos();
+            }
+            let end = if m == 0 || m == degree { 1.0 } else { 2.0 };
+            end * sum / degree as f64
+        })
+        .collect()
+}
+
+/// Value and d/dξ derivatives to `order` of a Chebyshev series at one point (Clenshaw's recurrence).
+pub fn derivative_values(coefficients: &[f64], xi: f64, order: usize) -> Vec<f64> {
+    let mut series = coefficients.to_vec();
+    let mut values = Vec::with_capacity(order + 1);
+    for _ in 0..=order {
+        values.push(clenshaw(&series, xi));
+        series = differentiate(&series);
+    }
+    values
+}
+
+fn clenshaw(series: &[f64], xi: f64) -> f64 {
+    let (mut b1, mut b2) = (0.0, 0.0);
+    for &c in series.iter().skip(1).rev() {
+        (b1, b2) = (2.0 * xi * b1 - b2 + c, b1);
+    }
+    xi * b1 - b2 + series.first().copied().unwrap_or(0.0)
+}
+
+/// Coefficients of the derivative.
+fn differentiate(series: &[f64]) -> Vec<f64> {
+    let n = series.len();
+    if n < 2 {
+        return vec![0.0];
+    }
+    let mut derivative = vec![0.0; n - 1];
+    for m in (0..n - 1).rev() {
+        let above = if m + 2 < n - 1 { derivative[m + 2] } else { 0.0 };
+        derivative[m] = above + 2.0 * (m + 1) as f64 * series[m + 1];
+    }
+    derivative[0] *= 0.5;
+    derivative
+}

@@ -1,0 +1,7 @@
+//! Chebyshev collocation: grids, differentiation between grids, quadrature.
+
+mod chebyshev;
+mod layout;
+
+pub use chebyshev::{Grid, GridKind, clenshaw_curtis, coefficients, derivative_values};
+pub use layout::{Block, Discretisation, Layout};

@@ -1,0 +1,204 @@
+//! The collocated linear problems of a model around one base state: direct and adjoint.
+//!
+//! Coefficients are evaluated once a base state; a matrix for any wavenumber is then a sum of scaled
+//! differentiation matrices. Where the model has the mirror symmetry x → −x, unknowns are kept in
+//! the basis in which every matrix is real (odd fields divided by i).
+
+mod assemble;
+mod closure;
+mod conditions;
+
+pub use assemble::Combination;
+pub use closure::Border;
+pub use conditions::WallRow;
+
+use crate::base::BaseState;
+use crate::collocation::{Discretisation, Grid, GridKind, Layout};
+use crate::error::{Error, Result};
+use crate::model::{C64, Jet, KernelId, Model, Structure, evaluate};
+
+/// Direct or adjoint linear problem: terms with coefficients at their rows' points.
+pub struct LinearProblem {
+    pub layout: Layout,
+    /// Row, jet (field = column) and coefficient at each point of the row.
+    terms: Vec<(usize, Jet, Vec<f64>)>,
+    pub walls: Vec<WallRow>,
+    /// Quarter turns of columns and rows that make matrices real; zeros without the symmetry.
+    column_turns: Vec<usize>,
+    row_turns: Vec<usize>,
+}
+
+/// Everything about one base state that does not depend on the wavenumber.
+pub struct Problem<'m> {
+    pub model: &'m dyn Model,
+    pub base: &'m BaseState,
+    /// M; 0 without a cross-stream coordinate.
+    pub resolution: usize,
+    pub discretisation: &'m Discretisation,
+    pub direct: LinearProblem,
+    /// The separately discretised adjoint, or why it has no boundary conditions.
+    pub adjoint: std::result::Result<LinearProblem, String>,
+    /// Bordering of the direct problem at k = 0.
+    pub borders: Vec<Border>,
+    /// Coefficients of N2, N3 at the points of each row: `[row][point][coefficient]`.
+    pub nonlinear: Vec<Vec<Vec<f64>>>,
+}
+
+impl<'m> Problem<'m> {
+    /// Collocates the operators around `base` with M = `resolution`.
+    ///
+    /// # Errors
+    /// A coefficient that is not finite at some point.
+    pub fn new(
+        model: &'m dyn Model,
+        base: &'m BaseState,
+        discretisation: &'m Discretisation,
+        resolution: usize,
+    ) -> Result<Self> {
+        let direct = Self::direct(model, base, resolution)?;
+        let adjoint = Self::adjoint(model, base, resolution)?;
+        let borders = closure::borders(model, base, &direct.layout, discretisation);
+        let mut nonlinear = Vec::new();
+        for block in &direct.layout.rows {
+            let grid = Grid::new(block.grid);
+            let points = grid.nodes.iter().map(|&xi| {
+                evaluate(model, KernelId::Nonlinear, &base.point(model, xi, 0.0))
+            });
+            nonlinear.push(points.collect());
+        }
+        Ok(Problem { model, base, resolution, discretisation, direct, adjoint, borders, nonlinear })
+    }
+
+    fn direct(model: &dyn Model, base: &BaseState, resolution: usize) -> Result<LinearProblem> {
+        let structure = model.structure();
+        let walls = conditions::direct(model, base);
+        let profiles = structure.profiles();
+        let counts: Vec<usize> =
+            (0..profiles).map(|f| walls.iter().filter(|w| w.owner == f).count()).collect();
+        let layout = layout(structure, &counts, &structure.pairing, resolution)?;
+        let (column_turns, row_turns) = turns(structure);
+        let terms = terms(model, base, &layout, KernelId::Linear)?;
+        Ok(LinearProblem::new(layout, terms, walls, column_turns, row_turns))
+    }
+
+    fn adjoint(
+        model: &dyn Model,
+        base: &BaseState,
+        resolution: usize,
+    ) -> Result<std::result::Result<LinearProblem, String>> {
+        let structure = model.structure();
+        let walls = match conditions::adjoint(model, base) {
+            Ok(walls) => walls,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        let profiles = structure.profiles();
+        // Columns are balances; the row of field f belongs to the balance paired with it.
+        let pairing: Vec<usize> = (0..profiles)
+            .map(|f| structure.pairing.iter().position(|&p| p == f).unwrap_or(f))
+            .collect();
+        let counts: Vec<usize> =
+            (0..profiles).map(|b| walls.iter().filter(|w| w.owner == b).count()).collect();
+        let layout = layout(structure, &counts, &pairing, resolution)?;
+        let (column_turns, row_turns) = turns(structure);
+        let terms = terms(model, base, &layout, KernelId::Adjoint)?;
+        Ok(Ok(LinearProblem::new(layout, terms, walls, row_turns, column_turns)))
+    }
+
+    pub fn structure(&self) -> &Structure {
+        self.model.structure()
+    }
+
+    /// Whether matrices are real wherever the shift is.
+    pub fn is_real(&self) -> bool {
+        self.structure().parity.is_some()
+    }
+
+    /// Physical values of the unknowns from those in the solver's basis.
+    pub fn physical<T: crate::dense::Scalar>(&self, x: &[T]) -> Vec<C64> {
+        let mut values = vec![C64::new(0.0, 0.0); self.direct.layout.size];
+        for (block, &turn) in self.direct.layout.columns.iter().zip(&self.direct.column_turns) {
+            for i in block.offset..block.offset + block.len {
+                values[i] = x[i].complex() * quarter_turn(turn);
+            }
+        }
+        values
+    }
+
+    /// dξ/dy, or 1 without a cross-stream coordinate.
+    pub fn scale(&self) -> f64 {
+        if self.resolution == 0 { 1.0 } else { self.base.scale() }
+    }
+}
+
+/// i^turns
+pub fn quarter_turn(turns: usize) -> C64 {
+    match turns % 4 {
+        0 => C64::new(1.0, 0.0),
+        1 => C64::new(0.0, 1.0),
+        2 => C64::new(-1.0, 0.0),
+        _ => C64::new(0.0, -1.0),
+    }
+}
+
+fn layout(
+    structure: &Structure,
+    counts: &[usize],
+    pairing: &[usize],
+    resolution: usize,
+) -> Result<Layout> {
+    let most = counts.iter().copied().max().unwrap_or(0);
+    if structure.coordinate.is_some() && resolution < most + 2 {
+        return Err(Error::input(format!("M = {resolution} is too small: at least {}", most + 2)));
+    }
+    let resolution = structure.coordinate.is_some().then_some(resolution);
+    Ok(Layout::new(counts, pairing, resolution))
+}
+
+/// Odd fields are i times real numbers, odd rows give i times real numbers.
+fn turns(structure: &Structure) -> (Vec<usize>, Vec<usize>) {
+    let profiles = structure.profiles();
+    match &structure.parity {
+        None => (vec![0; structure.fields.len()], vec![0; profiles]),
+        Some(parity) => {
+            let turns = |odd: &Vec<bool>| odd.iter().map(|&o| usize::from(o)).collect();
+            (turns(&parity.fields), turns(&parity.rows))
+        }
+    }
+}
+
+fn terms(
+    model: &dyn Model,
+    base: &BaseState,
+    layout: &Layout,
+    kernel: KernelId,
+) -> Result<Vec<(usize, Jet, Vec<f64>)>> {
+    let structure = model.structure();
+    let infos = if kernel == KernelId::Linear { &structure.linear } else { &structure.adjoint };
+    let mut terms: Vec<(usize, Jet, Vec<f64>)> =
+        infos.iter().map(|t| (t.row, t.jet, Vec::new())).collect();
+    let mut cache: Vec<(GridKind, Vec<Vec<f64>>)> = Vec::new();
+    for (row, block) in layout.rows.iter().enumerate() {
+        if !cache.iter().any(|(kind, _)| *kind == block.grid) {
+            let nodes = Grid::new(block.grid).nodes;
+            let values: Vec<Vec<f64>> = nodes
+                .iter()
+                .map(|&xi| evaluate(model, kernel, &base.point(model, xi, 0.0)))
+                .collect();
+            cache.push((block.grid, values));
+        }
+        let Some((_, values)) = cache.iter().find(|(kind, _)| *kind == block.grid) else { continue };
+        for (index, term) in terms.iter_mut().enumerate().filter(|(_, t)| t.0 == row) {
+            term.2 = values.iter().map(|v| v[index]).collect();
+            if let Some(bad) = term.2.iter().position(|c| !c.is_finite()) {
+                let xi = Grid::new(block.grid).nodes[bad];
+                return Err(Error::computation(format!(
+                    "a coefficient of the balance `{}` is not finite at {} = {}: a law is singular at the base state there",
+                    structure.balances.get(row).map_or("", String::as_str),
+                    structure.coordinate.as_deref().unwrap_or("y"),
+                    base.y(xi)
+                )));
+            }
+        }
+    }
+    Ok(terms)
+}

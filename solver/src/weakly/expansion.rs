@@ -1,0 +1,314 @@
+//! The amplitude expansion, order by order.
+//!
+//! X' = Σ_m A^m { X[0;m] + Σ_k (X[k;m] e^{ikθ} + c.c.) },  dA/dt = a0 A + a2 A³ + …,
+//! dθ/dt = b0 + b2 A² + …, P (3.13)–(3.16). For every (k, m)
+//! [(m a0 + i k b0) M0 − L_k] X[k;m] = G[k;m] − c_{m−1} δ_{k1} M0 X[1;1], P (3.18).
+
+use super::mode::Mode;
+use crate::dense::{Factorised, Scalar};
+use crate::error::{Error, Result};
+use crate::model::{C64, ClosureKind, End, Jet};
+use crate::problem::Problem;
+use crate::collocation::GridKind;
+use crate::spectrum::EigenPair;
+use std::collections::BTreeMap;
+
+/// Harmonic k ≥ 0 and order m.
+pub type Key = (usize, usize);
+
+/// The modes and coefficients found so far.
+pub struct Expansion<'p, 'm> {
+    pub problem: &'p Problem<'m>,
+    pub k: f64,
+    pub pair: EigenPair,
+    pub modes: BTreeMap<Key, Mode>,
+    /// c0, c2, … as a0 + i b0, a2 + i b2, …
+    pub landau: Vec<C64>,
+    /// Multipliers of the closures at k = 0: name of the kind, order, value relative to the forcing.
+    pub multipliers: Vec<(ClosureKind, usize, f64)>,
+    /// Jets of a mode on the grids of the rows, made when first needed.
+    jets: BTreeMap<(usize, usize, bool, usize), Vec<Vec<C64>>>,
+}
+
+impl<'p, 'm> Expansion<'p, 'm> {
+    /// Starts from the normalised fundamental.
+    ///
+    /// # Errors
+    /// A mode that the spec's normalisation does not fit.
+    pub fn new(problem: &'p Problem<'m>, pair: EigenPair) -> Result<Self> {
+        let values = problem.physical(&pair.right);
+        let factor = super::normalise(problem, pair.k, &values)?;
+        let values: Vec<C64> = values.into_iter().map(|v| v * factor).collect();
+        let rate = values.iter().map(|v| v * pair.c).collect();
+        let mut modes = BTreeMap::new();
+        modes.insert((1, 1), Mode { harmonic: 1, values, rate, uniform: Vec::new() });
+        let (k, landau) = (pair.k, vec![pair.c]);
+        Ok(Expansion { problem, k, pair, modes, landau, multipliers: Vec::new(), jets: BTreeMap::new() })
+    }
+
+    /// m a0 + i k b0
+    pub fn shift(&self, (k, m): Key) -> C64 {
+        C64::new(m as f64 * self.landau[0].re, k as f64 * self.landau[0].im)
+    }
+
+    /// Solves for X[k;m], k ≠ 1, all modes of lower order being known.
+    ///
+    /// # Errors
+    /// A singular problem: resonance.
+    pub fn solve(&mut self, key: Key) -> Result<()> {
+        let real = self.problem.is_real() && self.landau.iter().all(|c| c.im == 0.0);
+        let mean_real = key.0 == 0 && (self.problem.structure().parity.is_none() || real);
+        let mode = if real || mean_real { self.solve_as::<f64>(key)? } else { self.solve_as::<C64>(key)? };
+        self.modes.insert(key, mode);
+        Ok(())
+    }
+
+    fn solve_as<T: Scalar>(&mut self, key: Key) -> Result<Mode> {
+        let (harmonic, order) = key;
+        let right = self.forcing(key);
+        let k = harmonic as f64 * self.k;
+        let shift = self.shift(key);
+        let mut system: Vec<T> = right.iter().map(|&v| T::from_complex(v)).collect();
+        let borders = if harmonic == 0 { self.problem.borders.len() } else { 0 };
+        system.extend((0..borders).map(|_| T::from_complex(C64::new(0.0, 0.0))));
+        let solution = Factorised::new(self.problem.shifted::<T>(k, shift)).solve(&system);
+        if solution.iter().any(|v| !v.complex().norm().is_finite()) {
+            return Err(Error::computation(format!(
+                "the problem for X[{harmonic};{order}] is singular: a resonance at k = {}",
+                self.k
+            )));
+        }
+        Ok(self.mode(key, &solution))
+    }
+
+    /// X[1;3] and c2 together: the bordered problem, closed by ⟨left vector, M0 X[1;3]⟩ = 0.
+    ///
+    /// # Errors
+    /// A singular problem.
+    pub fn solve_fundamental(&mut self, order: usize) -> Result<()> {
+        let key = (1, order);
+        let real = self.problem.is_real() && self.landau.iter().all(|c| c.im == 0.0);
+        let (mode, coefficient) =
+            if real { self.bordered::<f64>(key)? } else { self.bordered::<C64>(key)? };
+        self.landau.push(coefficient);
+        self.modes.insert(key, mode);
+        // The rate of X[1;m] gains the new coefficient times the fundamental.
+        let fundamental = self.modes[&(1, 1)].values.clone();
+        if let Some(mode) = self.modes.get_mut(&key) {
+            for (rate, value) in mode.rate.iter_mut().zip(&fundamental) {
+                *rate += coefficient * value;
+            }
+        }
+        Ok(())
+    }
+
+    fn bordered<T: Scalar>(&mut self, key: Key) -> Result<(Mode, C64)> {
+        let n = self.problem.direct.layout.size;
+        let right = self.forcing(key);
+        let matrix = self.problem.shifted::<T>(self.k, self.shift(key));
+        let (_, mass) = self.problem.pencil::<T>(self.k);
+        let fundamental = self.solver_basis(&self.modes[&(1, 1)].values);
+        let fundamental: Vec<T> = fundamental.iter().map(|&v| T::from_complex(v)).collect();
+        let column = crate::dense::apply(mass.as_ref(), &fundamental);
+        let left: Vec<T> = self.pair.left.iter().map(|&v| T::from_complex(v)).collect();
+        let row = crate::dense::apply_adjoint(mass.as_ref(), &left);
+        let bordered = faer::Mat::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
+            (true, true) => matrix[(i, j)],
+            (true, false) => column[i],
+            (false, true) => T::from_complex(row[j].complex().conj()),
+            (false, false) => T::from_complex(C64::new(0.0, 0.0)),
+        });
+        let mut system: Vec<T> = right.iter().map(|&v| T::from_complex(v)).collect();
+        system.push(T::from_complex(C64::new(0.0, 0.0)));
+        let solution = Factorised::new(bordered).solve(&system);
+        if solution.iter().any(|v| !v.complex().norm().is_finite()) {
+            return Err(Error::computation("the bordered problem for c2 is singular"));
+        }
+        Ok((self.mode(key, &solution[..n]), solution[n].complex()))
+    }
+
+    fn mode<T: Scalar>(&mut self, key: Key, solution: &[T]) -> Mode {
+        let (harmonic, order) = key;
+        let values = self.problem.physical(solution);
+        let mut rate: Vec<C64> = values.iter().map(|v| v * self.shift(key)).collect();
+        // ∂t (A^q e^{ikθ}) reaches order m through a_{m−q}, b_{m−q}.
+        for (&(k, q), lower) in &self.modes {
+            let step = order.saturating_sub(q);
+            if k == harmonic && step > 0 && step % 2 == 0 && let Some(c) = self.landau.get(step / 2) {
+                let factor = C64::new(q as f64 * c.re, k as f64 * c.im);
+                rate.iter_mut().zip(&lower.values).for_each(|(r, v)| *r += factor * v);
+            }
+        }
+        let n = self.problem.direct.layout.size;
+        let profiles = self.problem.direct.layout.columns.len();
+        let mut uniform =
+            vec![C64::new(0.0, 0.0); self.problem.structure().fields.len() - profiles];
+        if harmonic == 0 {
+            let size = self.problem.direct.layout.size;
+            let largest = solution[..size].iter().map(|v| v.complex().norm()).fold(1e-300, f64::max);
+            for (border, value) in self.problem.borders.iter().zip(&solution[n..]) {
+                match (border.kind, border.field) {
+                    (ClosureKind::Unknown, Some(field)) => uniform[field - profiles] = value.complex(),
+                    _ => self.multipliers.push((border.kind, order, value.complex().norm() / largest)),
+                }
+            }
+        }
+        Mode { harmonic: harmonic as i32, values, rate, uniform }
+    }
+
+    /// Physical values in the solver's basis.
+    fn solver_basis(&self, values: &[C64]) -> Vec<C64> {
+        let ones = vec![C64::new(1.0, 0.0); values.len()];
+        let turns = self.problem.physical(&ones);
+        values.iter().zip(turns).map(|(v, t)| v / t).collect()
+    }
+
+    /// G[k;m] with the boundary data, in the solver's basis: everything that modes of lower order
+    /// force, except what c_{m−1} multiplies.
+    pub fn forcing(&mut self, key: Key) -> Vec<C64> {
+        let structure = self.problem.structure();
+        let layout = &self.problem.direct.layout;
+        let mut right = vec![C64::new(0.0, 0.0); layout.size];
+        // Lower orders of the same harmonic through the time derivative: −(q a + i k b) M0 X[k;q].
+        self.time_terms(key, &mut right);
+        for degree in 2..=structure.order {
+            for (factors, multiplicity) in products(&self.modes, key, degree) {
+                self.add_product(degree, &factors, multiplicity, &mut right);
+            }
+        }
+        right
+    }
+
+    fn time_terms(&self, (k, m): Key, right: &mut [C64]) {
+        for (&(harmonic, q), mode) in &self.modes {
+            // q = 1, k = 1 goes with the unknown c_{m−1}.
+            if harmonic != k || q >= m || (m - q) % 2 == 1 || (k, q) == (1, 1) {
+                continue;
+            }
+            let Some(c) = self.landau.get((m - q) / 2) else { continue };
+            let factor = C64::new(q as f64 * c.re, k as f64 * c.im);
+            let (_, mass) = self.problem.pencil::<C64>(k as f64 * self.k);
+            let values = self.solver_basis(&mode.values);
+            let product = crate::dense::apply(mass.as_ref(), &values);
+            right.iter_mut().zip(product).for_each(|(r, p)| *r -= factor * p);
+        }
+    }
+
+    fn add_product(&mut self, degree: usize, factors: &[(Key, bool)], multiplicity: f64, right: &mut [C64]) {
+        let problem = self.problem;
+        let structure = problem.structure();
+        for row in 0..structure.balances.len() {
+            if !structure.forms[degree - 2][row] {
+                continue;
+            }
+            for factor in factors {
+                self.prepare(*factor, row);
+            }
+            let tables: Vec<&Vec<Vec<C64>>> = factors
+                .iter()
+                .map(|((k, m), conjugate)| &self.jets[&(*k, *m, *conjugate, row)])
+                .collect();
+            let block = &problem.direct.layout.rows[row];
+            let turn = problem.direct.row_factor(row) * multiplicity;
+            for (i, c) in problem.nonlinear[row].iter().enumerate() {
+                let arguments: [&[C64]; 4] =
+                    std::array::from_fn(|a| tables.get(a).map_or(&[][..], |t| t[i].as_slice()));
+                let value = problem.model.form(degree, row, c, &arguments[..degree]);
+                right[block.offset + i] += turn * value;
+            }
+        }
+        for (index, wall) in problem.direct.walls.iter().enumerate() {
+            let terms: Vec<_> = wall.nonlinear.iter().filter(|(m, _)| m.len() == degree).collect();
+            if terms.is_empty() {
+                continue;
+            }
+            let end = if wall.end == End::Lower { GridKind::Lower } else { GridKind::Upper };
+            let modes: Vec<Mode> = factors.iter().map(|f| self.factor(*f)).collect();
+            let mut total = C64::new(0.0, 0.0);
+            for (monomial, coefficient) in terms {
+                let value = symmetric_product(problem, self.k, &modes, monomial, end);
+                total += value * *coefficient;
+            }
+            let position = problem.direct.layout.walls + index;
+            right[position] -= problem.direct.wall_factor(wall) * total * multiplicity;
+        }
+    }
+
+    fn factor(&self, ((k, m), conjugate): (Key, bool)) -> Mode {
+        let mode = &self.modes[&(k, m)];
+        if conjugate { mode.conjugate() } else { mode.clone() }
+    }
+
+    /// Jets of one factor on one row's grid; rows on one grid share them.
+    fn prepare(&mut self, factor: (Key, bool), row: usize) {
+        let ((k, m), conjugate) = factor;
+        if self.jets.contains_key(&(k, m, conjugate, row)) {
+            return;
+        }
+        let rows = &self.problem.direct.layout.rows;
+        let grid = rows[row].grid;
+        let twin = (0..rows.len())
+            .filter(|&r| rows[r].grid == grid)
+            .find_map(|r| self.jets.get(&(k, m, conjugate, r)).cloned());
+        let table = twin.unwrap_or_else(|| {
+            let jets = &self.problem.structure().form_jets;
+            self.factor(factor).jets(self.problem, self.k, jets, grid)
+        });
+        self.jets.insert((k, m, conjugate, row), table);
+    }
+}
+
+/// 1/d! Σ over permutations of Π jets at one end.
+fn symmetric_product(problem: &Problem, k: f64, modes: &[Mode], monomial: &[Jet], end: GridKind) -> C64 {
+    fn sum(values: &[Vec<C64>], position: usize, used: u32) -> C64 {
+        if position == values.len() {
+            return C64::new(1.0, 0.0);
+        }
+        let open = (0..values.len()).filter(|i| used >> i & 1 == 0);
+        open.map(|i| values[position][i] * sum(values, position + 1, used | 1 << i)).sum()
+    }
+    let values: Vec<Vec<C64>> = monomial
+        .iter()
+        .map(|&jet| modes.iter().map(|mode| mode.jet(problem, k, jet, end)[0]).collect())
+        .collect();
+    let factorial: f64 = (1..=modes.len()).map(|i| i as f64).product();
+    sum(&values, 0, 0) / factorial
+}
+
+/// All products of `degree` modes that force (k, m): each multiset once, with the number of its
+/// orderings.
+fn products(modes: &BTreeMap<Key, Mode>, (k, m): Key, degree: usize) -> Vec<(Vec<(Key, bool)>, f64)> {
+    let mut candidates: Vec<(Key, bool)> = Vec::new();
+    for &key in modes.keys() {
+        candidates.push((key, false));
+        if key.0 > 0 {
+            candidates.push((key, true));
+        }
+    }
+    let mut found = Vec::new();
+    let mut open = vec![(Vec::<usize>::new(), 0_i64, 0_usize)];
+    while let Some((chosen, harmonic, order)) = open.pop() {
+        if chosen.len() == degree {
+            if harmonic == k as i64 && order == m {
+                let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();
+                let mut orderings = factorial(degree);
+                for index in 0..candidates.len() {
+                    orderings /= factorial(chosen.iter().filter(|&&c| c == index).count());
+                }
+                found.push((chosen.iter().map(|&i| candidates[i]).collect(), orderings));
+            }
+            continue;
+        }
+        let first = chosen.last().copied().unwrap_or(0);
+        for (index, ((harmonic_of, order_of), conjugate)) in candidates.iter().enumerate().skip(first) {
+            if order + order_of > m {
+                continue;
+            }
+            let sign = if *conjugate { -1 } else { 1 };
+            let mut longer = chosen.clone();
+            longer.push(index);
+            open.push((longer, harmonic + sign * *harmonic_of as i64, order + order_of));
+        }
+    }
+    found
+}

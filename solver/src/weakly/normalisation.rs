@@ -1,0 +1,112 @@
+//! The normalisation that the spec asks for, and the rule that fixes the phase.
+
+use super::mode::Mode;
+use crate::collocation::{Grid, GridKind, clenshaw_curtis};
+use crate::error::{Error, Result};
+use crate::model::{C64, Jet, KernelId, evaluate};
+use crate::problem::Problem;
+
+/// The factor by which the fundamental has to be multiplied.
+///
+/// Its modulus meets the spec's condition. Its phase makes the profile value of largest modulus of
+/// the first field real and positive (a field of odd parity: imaginary), or, for a point value,
+/// that value.
+///
+/// # Errors
+/// A mode whose normalising quantity vanishes.
+pub fn normalise(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
+    let structure = problem.structure();
+    let amplitude = &structure.amplitude;
+    let zero = vec![C64::new(0.0, 0.0); values.len()];
+    let mode = Mode { harmonic: 1, values: values.to_vec(), rate: zero, uniform: Vec::new() };
+    if let Some(field) = amplitude.field {
+        let out = evaluate(problem.model, KernelId::Amplitude, &problem.base.point(problem.model, 0.0, k));
+        let (wanted, place) = (out[0].abs(), out[1]);
+        let value = point_value(problem, &mode, field, place);
+        if value.norm() < 1e-12 * values.iter().map(|v| v.norm()).fold(0.0, f64::max) {
+            return Err(vanishes(problem));
+        }
+        return Ok(value.conj() / value.norm_sqr() * wanted);
+    }
+    let (square, wanted) = weighted_square(problem, k, &mode);
+    if !(square > 0.0 && wanted > 0.0) {
+        return Err(vanishes(problem));
+    }
+    Ok(phase(problem, values) * (wanted / square).sqrt())
+}
+
+fn vanishes(problem: &Problem) -> Error {
+    Error::computation(format!(
+        "the mode cannot be normalised: {} is not possible for it",
+        problem.structure().amplitude.description
+    ))
+}
+
+fn point_value(problem: &Problem, mode: &Mode, field: usize, place: f64) -> C64 {
+    let block = &problem.direct.layout.columns[field];
+    let values = &mode.values[block.offset..block.offset + block.len];
+    if problem.resolution == 0 {
+        return values[0];
+    }
+    let xi = -1.0 + (place - problem.base.lower) * problem.base.scale();
+    let row = Grid::new(block.grid).interpolate_to(&[xi]);
+    values.iter().enumerate().map(|(j, v)| v * row[(0, j)]).sum()
+}
+
+/// ∫ Σ w|q|² dy and the value it should have.
+fn weighted_square(problem: &Problem, k: f64, mode: &Mode) -> (f64, f64) {
+    let fields = &problem.structure().amplitude.weighted;
+    let kernel = KernelId::Amplitude;
+    let quadrature = quadrature_grid(problem);
+    let weights = quadrature_weights(problem, quadrature);
+    let jets: Vec<Jet> = fields.iter().map(|&f| Jet::value(f)).collect();
+    let profiles: Vec<Vec<C64>> =
+        jets.iter().map(|&jet| mode.jet(problem, k, jet, quadrature)).collect();
+    let nodes = Grid::new(quadrature).nodes;
+    let (mut square, mut wanted) = (0.0, 0.0);
+    for (i, &xi) in nodes.iter().enumerate() {
+        let out = evaluate(problem.model, kernel, &problem.base.point(problem.model, xi, k));
+        for (f, profile) in profiles.iter().enumerate() {
+            square += weights[i] * out[f] * profile[i].norm_sqr();
+        }
+        wanted = out[fields.len()];
+    }
+    (square, wanted)
+}
+
+/// A grid on which products of two profiles integrate exactly.
+pub fn quadrature_grid(problem: &Problem) -> GridKind {
+    match problem.resolution {
+        0 => GridKind::Point,
+        m => GridKind::Lobatto(4 * m + 1),
+    }
+}
+
+/// Weights of ∫ dy on that grid.
+pub fn quadrature_weights(problem: &Problem, grid: GridKind) -> Vec<f64> {
+    match grid {
+        GridKind::Lobatto(n) => {
+            let half = 0.5 * (problem.base.upper - problem.base.lower);
+            clenshaw_curtis(n).into_iter().map(|w| w * half).collect()
+        }
+        _ => vec![1.0],
+    }
+}
+
+fn phase(problem: &Problem, values: &[C64]) -> C64 {
+    let parity = problem.structure().parity.as_ref();
+    for (field, block) in problem.direct.layout.columns.iter().enumerate() {
+        let own = &values[block.offset..block.offset + block.len];
+        let Some(largest) = own.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())) else { continue };
+        if largest.norm() > 1e-9 * values.iter().map(|v| v.norm()).fold(0.0, f64::max) {
+            let odd = parity.is_some_and(|p| p.fields[field]);
+            let turn = quarter(odd);
+            return turn * largest.conj() / largest.norm();
+        }
+    }
+    C64::new(1.0, 0.0)
+}
+
+fn quarter(odd: bool) -> C64 {
+    crate::problem::quarter_turn(usize::from(odd))
+}
