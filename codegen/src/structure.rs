@@ -230,6 +230,8 @@ pub enum KernelId {
     Automatic,
     /// Conditions of the base in one case, with their Jacobian.
     BaseConditions(usize),
+    /// What each balance is divided by.
+    Divisors,
     Linear,
     Adjoint,
     Nonlinear,

@@ -1,10 +1,12 @@
 pub mod model;
 pub mod base;
+pub mod cli;
 pub mod collocation;
 pub mod dense;
 pub mod error;
 pub mod parameters;
 pub mod problem;
 pub mod spectrum;
+pub mod study;
 pub mod weakly;
 pub use model::Model;

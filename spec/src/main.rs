@@ -1,1 +1,3 @@
-fn main() {}
+fn main() -> std::process::ExitCode {
+    landau_solver::cli::run(landau_spec::models())
+}

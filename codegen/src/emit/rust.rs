@@ -136,6 +136,7 @@ fn kernel_name(id: KernelId) -> Ident {
         KernelId::BaseIntegrals => format_ident!("base_integrals"),
         KernelId::Automatic => format_ident!("automatic_conditions"),
         KernelId::BaseConditions(case) => format_ident!("base_conditions_{case}"),
+        KernelId::Divisors => format_ident!("divisors"),
         KernelId::Linear => format_ident!("linear_coefficients"),
         KernelId::Adjoint => format_ident!("adjoint_coefficients"),
         KernelId::Nonlinear => format_ident!("nonlinear_coefficients"),

@@ -93,6 +93,7 @@ impl Assembler<'_> {
         let base = self.base();
         let linear = operators.linear.iter().map(|t| TermInfo { row: t.row, jet: t.jet }).collect();
         let adjoint = operators.adjoint.iter().map(|t| TermInfo { row: t.row, jet: t.jet }).collect();
+        self.opened(KernelId::Divisors, operators.divisors.clone());
         self.opened(KernelId::Linear, operators.linear.iter().map(|t| t.coefficient).collect());
         self.opened(KernelId::Adjoint, operators.adjoint.iter().map(|t| t.coefficient).collect());
         let (form_jets, coefficients) = self.nonlinear();

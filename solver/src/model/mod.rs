@@ -55,6 +55,7 @@ pub fn output_length(structure: &Structure, kernel: KernelId) -> usize {
         KernelId::BaseConditions(case) => {
             structure.cases[case].base_conditions.iter().map(|c| jets(&c.jets)).sum()
         }
+        KernelId::Divisors => structure.balances.len(),
         KernelId::Linear => structure.linear.len(),
         KernelId::Adjoint => structure.adjoint.len(),
         KernelId::Nonlinear => structure.form_coefficients,

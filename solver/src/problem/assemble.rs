@@ -50,6 +50,11 @@ impl LinearProblem {
         quarter_turn(4 - self.wall_turn(wall))
     }
 
+    /// Quarter turns between the solver's basis and physical values of a column.
+    pub fn column_turn(&self, column: usize) -> usize {
+        self.column_turns[column]
+    }
+
     /// The factor by which a row's right-hand side enters the solver's basis.
     pub fn row_factor(&self, row: usize) -> C64 {
         quarter_turn(4 - self.row_turns[row])

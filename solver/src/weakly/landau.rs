@@ -78,7 +78,20 @@ pub fn from_pair<'p, 'm>(problem: &'p Problem<'m>, pair: EigenPair) -> Result<La
     Ok(LandauPoint { expansion, c0, c2 })
 }
 
-impl LandauPoint<'_, '_> {
+impl<'p, 'm> LandauPoint<'p, 'm> {
+    /// The expansion carried on through X[1;3] (with c2 from the bordered problem) and X[3;3].
+    ///
+    /// # Errors
+    /// A resonance.
+    pub fn third_order(&self) -> Result<Expansion<'p, 'm>> {
+        let mut expansion = Expansion::new(self.expansion.problem, self.expansion.pair.clone())?;
+        expansion.solve((0, 2))?;
+        expansion.solve((2, 2))?;
+        expansion.solve_fundamental(3)?;
+        expansion.solve((3, 3))?;
+        Ok(expansion)
+    }
+
     /// A_e² = −a0/a2 where that is positive, P (4.1).
     pub fn amplitude(&self) -> Option<f64> {
         let square = -self.c0.re / self.c2.re;

@@ -1,0 +1,64 @@
+//! Commands that compute nothing: models, check, explain.
+
+use super::arguments::{Format, OperatorName};
+use crate::error::{Error, Result};
+use crate::model::Model;
+use landau_codegen::Sources;
+use landau_codegen::build::read_sources;
+use landau_codegen::diagnostic::SourceFile;
+use landau_codegen::emit::text::{self, Section};
+use landau_codegen::generate;
+use serde_json::json;
+use std::path::Path;
+
+pub fn models(models: &[Box<dyn Model>], json: bool) -> Result<()> {
+    if json {
+        let list: Vec<_> = models
+            .iter()
+            .map(|m| json!({"name": m.structure().name, "title": m.structure().title}))
+            .collect();
+        println!("{}", json!(list));
+        return Ok(());
+    }
+    let width = models.iter().map(|m| m.structure().name.len()).max().unwrap_or(0);
+    for model in models {
+        println!("{:width$}  {}", model.structure().name, model.structure().title);
+    }
+    Ok(())
+}
+
+pub fn check(file: &Path) -> Result<()> {
+    let sources = read_sources(file)
+        .map_err(|e| Error::input(format!("{} cannot be read: {e}", file.display())))?;
+    match generate(&sources) {
+        Ok((derivation, _)) => {
+            let fields = derivation.model.field_names().join(", ");
+            println!("{}: the model `{}` in {fields} is well formed", file.display(), derivation.model.name);
+            Ok(())
+        }
+        Err(mistakes) => Err(Error::input(format!("the spec has mistakes\n\n{mistakes}"))),
+    }
+}
+
+pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format) -> Result<()> {
+    let Format::Text = format;
+    let mut files = model.sources().into_iter().map(|(path, text)| SourceFile { path, text });
+    let spec = files.next().ok_or_else(|| Error::input("the model has no source"))?;
+    let stem = |path: &str| Path::new(path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let laws = files.map(|file| (stem(&file.path), file)).collect();
+    let (derivation, _) = generate(&Sources { spec, laws })
+        .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
+    let chosen = operator.map(|name| match name {
+        OperatorName::Base => Section::Base,
+        OperatorName::Linear => Section::Linear,
+        OperatorName::Adjoint => Section::Adjoint,
+        OperatorName::N2 => Section::Nonlinear(2),
+        OperatorName::N3 => Section::Nonlinear(3),
+    });
+    for section in text::sections(&derivation) {
+        if chosen.is_none_or(|c| c == section) {
+            println!("{}", text::print(&derivation, section));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,54 @@
+//! Numbers as JSON and as text.
+
+use crate::model::C64;
+use crate::parameters::Parameters;
+use crate::study::Setup;
+use serde_json::{Map, Value, json};
+
+/// A finite number, or null.
+pub fn number(value: f64) -> Value {
+    if value.is_finite() { json!(value) } else { Value::Null }
+}
+
+/// [re, im]
+pub fn complex(value: C64) -> Value {
+    Value::Array(vec![number(value.re), number(value.im)])
+}
+
+/// All parameters by name, switches by the name of their choice.
+pub fn parameters(setup: &Setup, parameters: &Parameters) -> Value {
+    let structure = setup.model.structure();
+    let mut map = Map::new();
+    for (index, info) in structure.parameters.iter().enumerate() {
+        let value = if info.choices.is_empty() {
+            number(parameters.values[index])
+        } else {
+            Value::String(parameters.shown(structure, index))
+        };
+        map.insert(info.name.clone(), value);
+    }
+    Value::Object(map)
+}
+
+/// `0.00190361` or `0.0037397 - 0.2375265 i`
+pub fn shown(value: C64) -> String {
+    let digits = |x: f64| format!("{x:.10}");
+    let small = value.norm() < 1e-3 && value.norm() > 0.0;
+    let digits = |x: f64| if small { format!("{x:.9e}") } else { digits(x) };
+    if value.im == 0.0 {
+        digits(value.re)
+    } else {
+        let sign = if value.im < 0.0 { '-' } else { '+' };
+        format!("{} {sign} {} i", digits(value.re), digits(value.im.abs()))
+    }
+}
+
+/// The amplitude equation with its numbers.
+pub fn amplitude_equation(c0: C64, c2: C64) -> String {
+    let term = |x: f64| format!("{} {:.6e}", if x < 0.0 { "-" } else { "+" }, x.abs());
+    let mut text = format!("dA/dt = {:.6e} A {} A³", c0.re, term(c2.re));
+    if c0.im != 0.0 || c2.im != 0.0 {
+        text += &format!(",  dθ/dt = {:.6e} {} A²", c0.im, term(c2.im));
+    }
+    text
+}

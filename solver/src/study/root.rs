@@ -1,0 +1,62 @@
+//! Roots of continuous functions of one variable.
+
+use crate::error::{Error, Result};
+
+const MOST_ITERATIONS: usize = 100;
+
+/// Brent's method between two points of opposite sign: the root and the function's value there.
+///
+/// # Errors
+/// Whatever the function fails with; no convergence.
+pub fn brent(
+    mut f: impl FnMut(f64) -> Result<f64>,
+    (mut a, mut fa): (f64, f64),
+    (mut b, mut fb): (f64, f64),
+    tolerance: f64,
+) -> Result<(f64, f64)> {
+    let (mut c, mut fc, mut d) = (a, fa, b - a);
+    let mut e = d;
+    for _ in 0..MOST_ITERATIONS {
+        if fb * fc > 0.0 {
+            (c, fc) = (a, fa);
+            d = b - a;
+            e = d;
+        }
+        if fc.abs() < fb.abs() {
+            (a, b, c) = (b, c, b);
+            (fa, fb, fc) = (fb, fc, fb);
+        }
+        let near = 2.0 * f64::EPSILON * b.abs() + 0.5 * tolerance;
+        let half = 0.5 * (c - b);
+        if half.abs() <= near || fb == 0.0 {
+            return Ok((b, fb));
+        }
+        if e.abs() >= near && fa.abs() > fb.abs() {
+            let s = fb / fa;
+            let (mut p, mut q) = if a == c {
+                (2.0 * half * s, 1.0 - s)
+            } else {
+                let (q, r) = (fa / fc, fb / fc);
+                (s * (2.0 * half * q * (q - r) - (b - a) * (r - 1.0)), (q - 1.0) * (r - 1.0) * (s - 1.0))
+            };
+            if p > 0.0 {
+                q = -q;
+            }
+            p = p.abs();
+            if 2.0 * p < (3.0 * half * q - (near * q).abs()).min((e * q).abs()) {
+                e = d;
+                d = p / q;
+            } else {
+                d = half;
+                e = d;
+            }
+        } else {
+            d = half;
+            e = d;
+        }
+        (a, fa) = (b, fb);
+        b += if d.abs() > near { d } else { near.copysign(half) };
+        fb = f(b)?;
+    }
+    Err(Error::computation(format!("no root was found near {b}")))
+}

@@ -1,0 +1,325 @@
+//! Sweeps: Landau points over one or several axes, in parallel, resumable.
+//!
+//! The first axis is cut into chunks of fixed length. A chunk finds its mode from full spectra at its
+//! two ends (the more unstable one leads) and follows it by shape, so a row does not depend on how
+//! many threads there are, or on where an earlier run was interrupted.
+
+use super::{Axis, Carried, Setup};
+use crate::error::{Error, Result};
+use crate::model::C64;
+use crate::weakly::Selection;
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+use std::fs::{self, File, OpenOptions};
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+
+/// Points of the first axis that one worker follows.
+const CHUNK: usize = 16;
+
+/// Evenly spaced values along one axis.
+#[derive(Clone, Debug)]
+pub struct Range {
+    pub name: String,
+    pub axis: Axis,
+    pub values: Vec<f64>,
+}
+
+/// One row of the table.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct Row {
+    pub coordinates: Vec<f64>,
+    pub c0: Option<[f64; 2]>,
+    pub c2: Option<[f64; 2]>,
+    pub amplitude: Option<f64>,
+    pub bifurcation: String,
+    /// `ok`, or why there is no number.
+    pub status: String,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Finished {
+    chunk: usize,
+    rows: Vec<Row>,
+}
+
+/// A sweep over the product of its ranges, the first varying fastest.
+pub struct Sweep<'s, 'm> {
+    pub setup: &'s Setup<'m>,
+    pub ranges: Vec<Range>,
+    pub near: Option<C64>,
+    /// The wavenumber, where no range varies it.
+    pub k: Option<f64>,
+}
+
+impl Sweep<'_, '_> {
+    /// Number of points.
+    pub fn len(&self) -> usize {
+        self.ranges.iter().map(|r| r.values.len()).product()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    fn chunks_per_line(&self) -> usize {
+        self.ranges[0].values.len().div_ceil(CHUNK)
+    }
+
+    fn chunk_count(&self) -> usize {
+        let lines: usize = self.ranges[1..].iter().map(|r| r.values.len()).product();
+        lines * self.chunks_per_line()
+    }
+
+    /// Computes every row.
+    pub fn run(&self, progress: &ProgressBar) -> Vec<Row> {
+        self.run_chunks(&HashMap::new(), progress, &|_, _| {})
+    }
+
+    /// Computes the rows into a CSV file, whole or not at all; an interrupted run leaves a journal
+    /// beside it, from which the next one goes on.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn run_to(&self, out: &Path, progress: &ProgressBar) -> Result<Vec<Row>> {
+        let journal = Journal::open(out, &self.fingerprint())?;
+        let rows = self.run_chunks(&journal.known, progress, &|chunk, rows| journal.record(chunk, rows));
+        write_whole(out, &self.csv(&rows)?)?;
+        journal.remove();
+        Ok(rows)
+    }
+
+    fn run_chunks(
+        &self,
+        known: &HashMap<usize, Vec<Row>>,
+        progress: &ProgressBar,
+        record: &(dyn Fn(usize, &[Row]) + Sync),
+    ) -> Vec<Row> {
+        progress.set_length(self.len() as u64);
+        let chunks: Vec<Vec<Row>> = (0..self.chunk_count())
+            .into_par_iter()
+            .map(|chunk| {
+                if let Some(rows) = known.get(&chunk) {
+                    progress.inc(rows.len() as u64);
+                    return rows.clone();
+                }
+                let rows = self.chunk(chunk, progress);
+                record(chunk, &rows);
+                rows
+            })
+            .collect();
+        progress.finish_and_clear();
+        chunks.into_iter().flatten().collect()
+    }
+
+    fn chunk(&self, chunk: usize, progress: &ProgressBar) -> Vec<Row> {
+        let per_line = self.chunks_per_line();
+        let mut line = chunk / per_line;
+        let first = (chunk % per_line) * CHUNK;
+        let values = &self.ranges[0].values;
+        let points = &values[first..(first + CHUNK).min(values.len())];
+        let mut others = Vec::new();
+        for range in &self.ranges[1..] {
+            others.push(range.values[line % range.values.len()]);
+            line /= range.values.len();
+        }
+        let coordinates = |x: f64| std::iter::once(x).chain(others.iter().copied()).collect::<Vec<f64>>();
+        // Which end leads?
+        let ends = [0, points.len() - 1].map(|i| self.evaluate(&coordinates(points[i]), None));
+        let growth = |end: &Result<(Row, Carried)>| {
+            end.as_ref().map_or(f64::NEG_INFINITY, |(_, carried)| carried.pair.c.re)
+        };
+        let backwards = growth(&ends[1]) > growth(&ends[0]);
+        let mut order: Vec<usize> = (0..points.len()).collect();
+        if backwards {
+            order.reverse();
+        }
+        let mut rows: Vec<Option<Row>> = vec![None; points.len()];
+        let mut carried: Option<Carried> = None;
+        let mut seed = Some(ends).map(|[a, b]| if backwards { b } else { a });
+        for index in order {
+            let place = coordinates(points[index]);
+            let outcome = match seed.take() {
+                Some(outcome) => outcome,
+                None => self.evaluate(&place, carried.as_ref()),
+            };
+            rows[index] = Some(match outcome {
+                Ok((row, next)) => {
+                    carried = Some(next);
+                    row
+                }
+                Err(error) => failed(place, &error),
+            });
+            progress.inc(1);
+        }
+        rows.into_iter().flatten().collect()
+    }
+
+    fn evaluate(&self, place: &[f64], near: Option<&Carried>) -> Result<(Row, Carried)> {
+        let mut setup = self.setup.clone();
+        let mut k = self.k.unwrap_or(0.0);
+        let mut fixed_base = true;
+        for (range, &value) in self.ranges.iter().zip(place) {
+            match range.axis {
+                Axis::Wavenumber => k = value,
+                axis => {
+                    setup = setup.moved(axis, value)?;
+                    fixed_base &= range.values.len() == 1 || range.name != self.ranges[0].name;
+                }
+            }
+        }
+        let base = match near {
+            Some(carried) if fixed_base => carried.base.clone(),
+            _ => setup.base(near.map(|c| &c.base))?,
+        };
+        let selection = match (near, self.near) {
+            (Some(carried), _) => Selection::Like(&carried.pair),
+            (None, Some(target)) => Selection::Near(target),
+            (None, None) => Selection::Leading,
+        };
+        let (row, pair) = setup.with_point(&base, k, selection, |point| {
+            let row = Row {
+                coordinates: place.to_vec(),
+                c0: Some([point.c0.re, point.c0.im]),
+                c2: Some([point.c2.re, point.c2.im]),
+                amplitude: point.amplitude(),
+                bifurcation: point.bifurcation(),
+                status: "ok".into(),
+            };
+            Ok((row, point.expansion.pair.clone()))
+        })?;
+        Ok((row, Carried { base, pair }))
+    }
+
+    /// The table as CSV.
+    ///
+    /// # Errors
+    /// Rows that do not serialise.
+    pub fn csv(&self, rows: &[Row]) -> Result<Vec<u8>> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let mut header: Vec<&str> = self.ranges.iter().map(|r| r.name.as_str()).collect();
+        header.extend(["c0_re", "c0_im", "c2_re", "c2_im", "amplitude", "bifurcation", "status"]);
+        let failure = |e: csv::Error| Error::computation(format!("the table cannot be written: {e}"));
+        writer.write_record(&header).map_err(failure)?;
+        let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
+        for row in rows {
+            let mut record: Vec<String> = row.coordinates.iter().map(f64::to_string).collect();
+            for pair in [row.c0, row.c2] {
+                record.push(number(pair.map(|p| p[0])));
+                record.push(number(pair.map(|p| p[1])));
+            }
+            record.push(number(row.amplitude));
+            record.push(row.bifurcation.clone());
+            record.push(row.status.clone());
+            writer.write_record(&record).map_err(failure)?;
+        }
+        writer.into_inner().map_err(|e| Error::computation(e.to_string()))
+    }
+
+    /// What a journal must have been made for.
+    fn fingerprint(&self) -> String {
+        let structure = self.setup.model.structure();
+        let sources = self.setup.model.sources();
+        let text: Vec<&str> = sources.iter().map(|(_, text)| text.as_str()).collect();
+        format!(
+            "{} {:?} {:?} M={} k={:?} near={:?} {:?} v{} {:x}",
+            structure.name,
+            self.setup.parameters.values,
+            self.setup.parameters.automatic,
+            self.setup.resolution,
+            self.k,
+            self.near,
+            self.ranges,
+            env!("CARGO_PKG_VERSION"),
+            checksum(&text.concat())
+        )
+    }
+}
+
+fn failed(coordinates: Vec<f64>, error: &Error) -> Row {
+    Row {
+        coordinates,
+        c0: None,
+        c2: None,
+        amplitude: None,
+        bifurcation: String::new(),
+        status: error.to_string(),
+    }
+}
+
+/// FNV-1a, enough to tell one spec from another.
+fn checksum(text: &str) -> u64 {
+    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// Finished chunks beside the output, one JSON object a line.
+struct Journal {
+    path: PathBuf,
+    file: Mutex<File>,
+    known: HashMap<usize, Vec<Row>>,
+}
+
+impl Journal {
+    fn open(out: &Path, fingerprint: &str) -> Result<Self> {
+        let mut name = out.file_name().unwrap_or_default().to_os_string();
+        name.push(".journal");
+        let path = out.with_file_name(name);
+        let failure = |e: std::io::Error| Error::input(format!("{} cannot be written: {e}", path.display()));
+        let mut known = HashMap::new();
+        let header = serde_json::to_string(fingerprint).unwrap_or_default();
+        let mut valid = false;
+        if let Ok(file) = File::open(&path) {
+            let mut lines = BufReader::new(file).lines().map_while(std::result::Result::ok);
+            valid = lines.next().as_deref() == Some(&header);
+            if valid {
+                // A line cut off by an interruption does not parse, and is computed again.
+                known = lines
+                    .filter_map(|line| serde_json::from_str::<Finished>(&line).ok())
+                    .map(|finished| (finished.chunk, finished.rows))
+                    .collect();
+            }
+        }
+        let mut options = OpenOptions::new();
+        let mut file = if valid {
+            options.append(true).open(&path).map_err(failure)?
+        } else {
+            options.write(true).create(true).truncate(true).open(&path).map_err(failure)?
+        };
+        if valid {
+            writeln!(file).map_err(failure)?;
+        } else {
+            writeln!(file, "{header}").map_err(failure)?;
+        }
+        Ok(Journal { path, file: Mutex::new(file), known })
+    }
+
+    fn record(&self, chunk: usize, rows: &[Row]) {
+        let finished = Finished { chunk, rows: rows.to_vec() };
+        if let (Ok(line), Ok(mut file)) = (serde_json::to_string(&finished), self.file.lock()) {
+            // A journal that cannot be written costs the resumption, not the result.
+            let _ = writeln!(file, "{line}").and_then(|()| file.flush());
+        }
+    }
+
+    fn remove(&self) {
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// Writes a file whole or not at all.
+///
+/// # Errors
+/// Folders that do not exist, permissions.
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(".part");
+    let part = path.with_file_name(name);
+    fs::write(&part, bytes)
+        .and_then(|()| fs::rename(&part, path))
+        .map_err(|e| Error::input(format!("{} cannot be written: {e}", path.display())))
+}
