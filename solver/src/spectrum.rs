@@ -44,7 +44,7 @@ pub fn eigenvalues(problem: &Problem, k: f64) -> Result<Vec<C64>> {
 /// # Errors
 /// As [`eigenvalues`], and where the model has no adjoint boundary conditions.
 pub fn adjoint_eigenvalues(problem: &Problem, k: f64) -> Result<Vec<C64>> {
-    let adjoint = problem.adjoint.as_ref().map_err(|reason| Error::computation(reason.clone()))?;
+    let adjoint = problem.adjoint()?;
     if problem.is_real() {
         eigenvalues_of::<f64>(problem.pencil_of(adjoint, k))
     } else {
@@ -287,7 +287,7 @@ fn iterate<T: Scalar>(
     right: &[C64],
     left: &[C64],
 ) -> Option<EigenPair> {
-    let (_, mass) = problem.pencil::<T>(k);
+    let mass = problem.mass::<T>(k);
     let factorised = Factorised::new(problem.shifted::<T>(k, shift));
     let kind = |x: &[C64]| -> Vec<T> {
         // A real mode may come with a complex factor: turn its largest entry real.

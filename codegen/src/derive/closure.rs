@@ -44,7 +44,7 @@ pub(super) fn derive(
         let Some(form) = deriver.expand(integrand, location, mistakes) else { continue };
         let density = density(&form);
         let Some(column) = multiplier(deriver, problem.linear, &density) else { continue };
-        if annihilates(deriver, problem, walls, rules, &column) {
+        if conserved(deriver, problem, walls, rules, &column, &closures) {
             closures.push(CaseClosure::Conserved { density, column });
         }
     }
@@ -64,7 +64,7 @@ pub(super) fn derive(
                 }
                 let row = problem.pairing.iter().position(|f| f == field).unwrap_or(0);
                 let column = vec![(row, problem.divisors[row])];
-                if annihilates(deriver, problem, walls, rules, &column) {
+                if conserved(deriver, problem, walls, rules, &column, &[]) {
                     closures.push(CaseClosure::Gauge { field: *field, column });
                 } else {
                     let name = &model.fields[*field].name;
@@ -175,15 +175,18 @@ fn multiplier(deriver: &mut Deriver, linear: &[Term], density: &[(Jet, Id)]) -> 
     Some(solution.filter(|(_, weight)| !graph.vanishes(*weight)).collect())
 }
 
-/// Whether L†ℓ = 0 and the boundary form vanishes, at k = 0.
-fn annihilates(
+/// Whether L†ℓ = 0 and the boundary form vanishes, at k = 0; or L†ℓ is a multiple of the density of
+/// an integral already known to be conserved (a Jordan block: ∫u changes by ∫v, which stays zero).
+fn conserved(
     deriver: &mut Deriver,
     problem: &CaseProblem,
     walls: &Walls,
     rules: &BaseRules,
     column: &[(usize, Id)],
+    known: &[CaseClosure],
 ) -> bool {
     let profiles = deriver.uniform.iter().filter(|u| !**u).count();
+    let mut image = Vec::with_capacity(profiles);
     for field in 0..profiles {
         let mut total = deriver.graph.zero();
         for term in problem.adjoint.iter().filter(|t| t.row == field && t.jet.is_base()) {
@@ -194,9 +197,11 @@ fn annihilates(
             let product = deriver.graph.mul(term.coefficient, derivative);
             total = deriver.graph.add(total, product);
         }
-        if !deriver.graph.vanishes(total) {
-            return false;
-        }
+        image.push(total);
+    }
+    let null = image.iter().all(|&id| deriver.graph.vanishes(id));
+    if !null && !known.iter().any(|closure| is_multiple(deriver.graph, &image, closure)) {
+        return false;
     }
     for (end, direct) in &walls.reduced {
         let place = deriver.place(*end);
@@ -219,6 +224,26 @@ fn annihilates(
         }
     }
     true
+}
+
+/// Whether Σ image_f q_f is a constant times the density of a conserved integral.
+fn is_multiple(graph: &mut Graph, image: &[Id], closure: &CaseClosure) -> bool {
+    let CaseClosure::Conserved { density, .. } = closure else { return false };
+    let Some((first, weight)) = density.first() else { return false };
+    let factor = graph.divide_terms(image[usize::from(first.field)], *weight);
+    let slope = graph.differentiate(factor, Variable::AlongBase);
+    if !graph.vanishes(slope) {
+        return false;
+    }
+    (0..image.len()).all(|field| {
+        let own = density.iter().find(|(jet, _)| usize::from(jet.field) == field);
+        let expected = match own {
+            Some((_, weight)) => graph.mul(factor, *weight),
+            None => graph.zero(),
+        };
+        let rest = graph.sub(image[field], expected);
+        graph.vanishes(rest)
+    })
 }
 
 fn along_base(graph: &mut Graph, mut id: Id, order: u8) -> Id {

@@ -137,7 +137,9 @@ impl<'a> Deriver<'a> {
         self.check_orders(&divided, mistakes);
         // operators
         let linear = linear::linear_operator(self.graph, &divided);
-        let adjoint = linear::adjoint_operator(self.graph, &linear);
+        let mut adjoint = linear::adjoint_operator(self.graph, &linear);
+        // An unknown number has no adjoint equation of its own: its condition is an integral.
+        adjoint.retain(|term| !self.uniform[term.row]);
         let nonlinear = (2..=self.order).map(|d| self.nonlinear(&divided, d)).collect();
         let given: Vec<_> = model.balances.iter().map(|b| b.paired_field).collect();
         let Some(pairing) = pairing::pair(&linear, balances.len(), profiles, &given) else {

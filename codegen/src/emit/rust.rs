@@ -33,6 +33,8 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
             forms.extend(quote!((#degree, #row) => #name(c, #(x[#arguments]),*),));
         }
     }
+    // A linear model reads neither coefficients nor jets.
+    let unread = forms.is_empty().then(|| quote!(let _ = (c, x);));
     let mut residuals = TokenStream::new();
     for (id, kernel) in &model.residuals {
         let (name, pattern) = residual_name(*id);
@@ -87,6 +89,7 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
             }
 
             fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64 {
+                #unread
                 match (degree, row) {
                     #forms
                     _ => C64::new(0.0, 0.0),

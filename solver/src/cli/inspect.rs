@@ -17,12 +17,12 @@ pub fn models(models: &[Box<dyn Model>], json: bool) -> Result<()> {
             .iter()
             .map(|m| json!({"name": m.structure().name, "title": m.structure().title}))
             .collect();
-        println!("{}", json!(list));
+        say!("{}", json!(list));
         return Ok(());
     }
     let width = models.iter().map(|m| m.structure().name.len()).max().unwrap_or(0);
     for model in models {
-        println!("{:width$}  {}", model.structure().name, model.structure().title);
+        say!("{:width$}  {}", model.structure().name, model.structure().title);
     }
     Ok(())
 }
@@ -33,7 +33,7 @@ pub fn check(file: &Path) -> Result<()> {
     match generate(&sources) {
         Ok((derivation, _)) => {
             let fields = derivation.model.field_names().join(", ");
-            println!("{}: the model `{}` in {fields} is well formed", file.display(), derivation.model.name);
+            say!("{}: the model `{}` in {fields} is well formed", file.display(), derivation.model.name);
             Ok(())
         }
         Err(mistakes) => Err(Error::input(format!("the spec has mistakes\n\n{mistakes}"))),
@@ -57,7 +57,7 @@ pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format
     });
     for section in text::sections(&derivation) {
         if chosen.is_none_or(|c| c == section) {
-            println!("{}", text::print(&derivation, section));
+            say!("{}", text::print(&derivation, section));
         }
     }
     Ok(())

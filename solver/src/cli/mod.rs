@@ -2,6 +2,14 @@
 //!
 //! Exit status 0: an answer. 2: bad input. 3: a computation without an answer.
 
+/// Prints a line; a reader that has gone away is no error.
+macro_rules! say {
+    ($($argument:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stdout(), $($argument)*);
+    }};
+}
+
 mod arguments;
 mod inspect;
 mod picture;

@@ -11,13 +11,13 @@ const SHOWN: usize = 24;
 pub fn table(sweep: &Sweep, rows: &[Row]) {
     let names = sweep.ranges.iter().map(|r| format!("{:>12}", r.name));
     let columns = ["a0", "a2", "A_e"].iter().map(|n| format!("{n:>16}"));
-    println!("{}", names.chain(columns).collect::<String>());
+    say!("{}", names.chain(columns).collect::<String>());
     let stride = rows.len().div_ceil(SHOWN).max(1);
     for row in rows.iter().step_by(stride) {
         let place = row.coordinates.iter().map(|x| format!("{x:>12.6}"));
         let number = |v: Option<f64>| v.map_or(format!("{:>16}", "-"), |v| format!("{v:>16.6e}"));
         let values = [row.c0.map(|c| c[0]), row.c2.map(|c| c[0]), row.amplitude].map(number);
-        println!("{}", place.chain(values).collect::<String>());
+        say!("{}", place.chain(values).collect::<String>());
     }
 }
 

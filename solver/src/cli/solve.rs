@@ -59,16 +59,16 @@ pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
             (coordinate): columns[0],
             "profiles": profiles,
         });
-        println!("{object}");
+        say!("{object}");
         return Ok(());
     }
-    println!("{} — base state, {} Chebyshev polynomials, tail {:.1e}", structure.title, state.degree + 1, state.tail());
+    say!("{} — base state, {} Chebyshev polynomials, tail {:.1e}", structure.title, state.degree + 1, state.tail());
     let names = structure.fields.iter().map(|f| f.name.as_str());
     let header: Vec<String> = std::iter::once(coordinate.as_str()).chain(names).map(|n| format!("{n:>16}")).collect();
-    println!("{}", header.join(""));
+    say!("{}", header.join(""));
     for i in 0..count {
         let row: Vec<String> = columns.iter().map(|c| format!("{:>16.9}", c[i])).collect();
-        println!("{}", row.join(""));
+        say!("{}", row.join(""));
     }
     Ok(())
 }
@@ -98,17 +98,17 @@ pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
                     object["adjoint_missing"] = Value::String(reason.to_string());
                 }
             }
-            println!("{object}");
+            say!("{object}");
             return Ok(());
         }
-        println!("{} at k = {k}, M = {}: leading eigenvalues", structure.title, setup.resolution);
-        println!("{:>44}   {:>44}", "L", "L†");
+        say!("{} at k = {k}, M = {}: leading eigenvalues", structure.title, setup.resolution);
+        say!("{:>44}   {:>44}", "L", "L†");
         for (i, c) in direct.iter().take(20).enumerate() {
             let other = adjoint.as_ref().ok().and_then(|a| a.get(i)).map_or(String::new(), |&c| report::shown(c));
-            println!("{:>44}   {:>44}", report::shown(*c), other);
+            say!("{:>44}   {:>44}", report::shown(*c), other);
         }
         if let Err(reason) = adjoint {
-            println!("L†: {reason}");
+            say!("L†: {reason}");
         }
         Ok(())
     })
@@ -141,7 +141,7 @@ pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()>
             for (index, slope) in &slopes {
                 derivatives.insert(structure.parameters[*index].name.clone(), report::complex(*slope));
             }
-            println!(
+            say!(
                 "{}",
                 json!({
                     "model": structure.name,
@@ -164,21 +164,21 @@ pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()>
             );
             return Ok(());
         }
-        println!("{} at k = {k}, M = {}", structure.title, setup.resolution);
-        println!("  {}", report::amplitude_equation(point.c0, point.c2));
-        println!("  c0 = {}   ± {:.1e}", report::shown(point.c0), error.c0);
-        println!("  c2 = {}   ± {:.1e}", report::shown(point.c2), error.c2);
-        println!("  {}", point.bifurcation());
+        say!("{} at k = {k}, M = {}", structure.title, setup.resolution);
+        say!("  {}", report::amplitude_equation(point.c0, point.c2));
+        say!("  c0 = {}   ± {:.1e}", report::shown(point.c0), error.c0);
+        say!("  c2 = {}   ± {:.1e}", report::shown(point.c2), error.c2);
+        say!("  {}", point.bifurcation());
         match point.amplitude() {
-            Some(amplitude) => println!("  A_e = {amplitude:.8}, normalised by {}", structure.amplitude.description),
-            None => println!("  no equilibrium at cubic order; normalised by {}", structure.amplitude.description),
+            Some(amplitude) => say!("  A_e = {amplitude:.8}, normalised by {}", structure.amplitude.description),
+            None => say!("  no equilibrium at cubic order; normalised by {}", structure.amplitude.description),
         }
-        println!("  distance to resonance: mean flow {:.3e}, 2:1 {:.3e}", resonance.mean_flow, resonance.second_harmonic);
+        say!("  distance to resonance: mean flow {:.3e}, 2:1 {:.3e}", resonance.mean_flow, resonance.second_harmonic);
         for (info, value) in structure.outputs.iter().zip(&values) {
-            println!("  {} = {:.8} + {:.8} A²", info.name, value[0], value[1]);
+            say!("  {} = {:.8} + {:.8} A²", info.name, value[0], value[1]);
         }
         for (index, slope) in &slopes {
-            println!("  dc0/d{} = {}", structure.parameters[*index].name, report::shown(*slope));
+            say!("  dc0/d{} = {}", structure.parameters[*index].name, report::shown(*slope));
         }
         Ok(())
     })
@@ -233,7 +233,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         eprintln!("note: further points in the interval: {}", others.join(", "));
     }
     if common.json {
-        println!(
+        say!(
             "{}",
             json!({
                 "parameter": options.vary,
@@ -244,7 +244,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
             })
         );
     } else {
-        println!("{} = {:.10} (of {name}) at k = {:.10}, c0 = {}", options.vary, first.value, first.k, report::shown(first.c0));
+        say!("{} = {:.10} (of {name}) at k = {:.10}, c0 = {}", options.vary, first.value, first.k, report::shown(first.c0));
     }
     Ok(())
 }
@@ -285,10 +285,10 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
     let good = rows.iter().filter(|r| r.status == "ok").count();
     let unstable = rows.iter().filter(|r| r.c0.is_some_and(|c| c[0] > 0.0)).count();
     if common.json {
-        println!("{}", json!({"out": options.out.display().to_string(), "rows": rows.len(), "ok": good, "unstable": unstable}));
+        say!("{}", json!({"out": options.out.display().to_string(), "rows": rows.len(), "ok": good, "unstable": unstable}));
     } else {
         picture::table(&sweep, &rows);
-        println!("{} rows, {good} with a number, {unstable} unstable: {}", rows.len(), options.out.display());
+        say!("{} rows, {good} with a number, {unstable} unstable: {}", rows.len(), options.out.display());
     }
     if good == 0 {
         return Err(Error::computation(format!("no point of the sweep has a number: {}", rows[0].status)));
@@ -306,18 +306,18 @@ pub fn verify(setup: &Setup, k: f64, common: &Common) -> Result<()> {
                        "bound": report::number(c.bound), "passed": c.passed, "detail": c.detail})
             })
             .collect();
-        println!("{}", json!({"model": setup.model.structure().name, "k": k, "M": setup.resolution, "checks": list}));
+        say!("{}", json!({"model": setup.model.structure().name, "k": k, "M": setup.resolution, "checks": list}));
     } else {
-        println!("{} at k = {k}, M = {}", setup.model.structure().title, setup.resolution);
+        say!("{} at k = {k}, M = {}", setup.model.structure().title, setup.resolution);
         let mut part = 0;
         for check in &checks {
             if check.part != part {
                 part = check.part;
                 let titles = ["residual order", "duality", "two routes", "nonlinear forms", "convergence"];
-                println!("{part}. {}", titles[part - 1]);
+                say!("{part}. {}", titles[part - 1]);
             }
             let mark = if check.passed { "  ok  " } else { "FAILED" };
-            println!("  {mark} {:<48} {:>12.4e}   {}", check.name, check.value, check.detail);
+            say!("  {mark} {:<48} {:>12.4e}   {}", check.name, check.value, check.detail);
         }
     }
     judge(&checks)

@@ -173,6 +173,13 @@ impl Problem<'_> {
         self.pencil_of(&self.direct, k)
     }
 
+    /// M0 at wavenumber k.
+    pub fn mass<T: Scalar>(&self, k: f64) -> Mat<T> {
+        let (zero, one) = (C64::new(0.0, 0.0), C64::new(1.0, 0.0));
+        let mass = Combination { mass: one, operator: zero, walls: 0.0 };
+        self.direct.matrix(self.discretisation, self.scale(), k, mass)
+    }
+
     /// The same for the adjoint problem.
     pub fn pencil_of<T: Scalar>(&self, problem: &LinearProblem, k: f64) -> (Mat<T>, Mat<T>) {
         let (zero, one) = (C64::new(0.0, 0.0), C64::new(1.0, 0.0));

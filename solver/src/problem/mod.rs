@@ -13,9 +13,11 @@ pub use closure::Border;
 pub use conditions::WallRow;
 
 use crate::base::BaseState;
-use crate::collocation::{Discretisation, Grid, GridKind, Layout};
+use crate::collocation::{Discretisation, Grid, GridKind, Layout, clenshaw_curtis};
 use crate::error::{Error, Result};
 use crate::model::{C64, Jet, KernelId, Model, Structure, evaluate};
+use faer::Mat;
+use std::sync::OnceLock;
 
 /// Direct or adjoint linear problem: terms with coefficients at their rows' points.
 pub struct LinearProblem {
@@ -36,12 +38,36 @@ pub struct Problem<'m> {
     pub resolution: usize,
     pub discretisation: &'m Discretisation,
     pub direct: LinearProblem,
-    /// The separately discretised adjoint, or why it has no boundary conditions.
-    pub adjoint: std::result::Result<LinearProblem, String>,
+    /// The separately discretised adjoint, made when first asked for.
+    adjoint: OnceLock<Result<LinearProblem>>,
     /// Bordering of the direct problem at k = 0.
     pub borders: Vec<Border>,
     /// Coefficients of N2, N3 at the points of each row: `[row][point][coefficient]`.
     pub nonlinear: Vec<Vec<Vec<f64>>>,
+    /// Quadratic form of the normalisation, by weighted field: Dᵀ diag(weights) D on its unknowns.
+    pub gram: Vec<Mat<f64>>,
+}
+
+/// Point states at the nodes of a grid, computed once a grid.
+struct Points<'m> {
+    model: &'m dyn Model,
+    base: &'m BaseState,
+    known: Vec<(GridKind, Vec<Vec<f64>>)>,
+}
+
+impl Points<'_> {
+    fn at(&mut self, grid: GridKind) -> &[Vec<f64>] {
+        let position = match self.known.iter().position(|(kind, _)| *kind == grid) {
+            Some(position) => position,
+            None => {
+                let nodes = Grid::new(grid).nodes;
+                let states = nodes.iter().map(|&xi| self.base.point(self.model, xi, 0.0)).collect();
+                self.known.push((grid, states));
+                self.known.len() - 1
+            }
+        };
+        &self.known[position].1
+    }
 }
 
 impl<'m> Problem<'m> {
@@ -55,21 +81,39 @@ impl<'m> Problem<'m> {
         discretisation: &'m Discretisation,
         resolution: usize,
     ) -> Result<Self> {
-        let direct = Self::direct(model, base, resolution)?;
-        let adjoint = Self::adjoint(model, base, resolution)?;
+        let mut points = Points { model, base, known: Vec::new() };
+        let direct = Self::direct(&mut points, resolution)?;
         let borders = closure::borders(model, base, &direct.layout, discretisation);
-        let mut nonlinear = Vec::new();
-        for block in &direct.layout.rows {
-            let grid = Grid::new(block.grid);
-            let points = grid.nodes.iter().map(|&xi| {
-                evaluate(model, KernelId::Nonlinear, &base.point(model, xi, 0.0))
+        let mut nonlinear: Vec<Vec<Vec<f64>>> = Vec::new();
+        for (row, block) in direct.layout.rows.iter().enumerate() {
+            let twin = direct.layout.rows[..row].iter().position(|b| b.grid == block.grid);
+            nonlinear.push(match twin {
+                Some(twin) => nonlinear[twin].clone(),
+                None => {
+                    let states = points.at(block.grid).iter();
+                    states.map(|p| evaluate(model, KernelId::Nonlinear, p)).collect()
+                }
             });
-            nonlinear.push(points.collect());
         }
-        Ok(Problem { model, base, resolution, discretisation, direct, adjoint, borders, nonlinear })
+        let gram = gram(model, base, &direct.layout, discretisation, resolution);
+        let adjoint = OnceLock::new();
+        Ok(Problem { model, base, resolution, discretisation, direct, adjoint, borders, nonlinear, gram })
     }
 
-    fn direct(model: &dyn Model, base: &BaseState, resolution: usize) -> Result<LinearProblem> {
+    /// The adjoint problem, discretised on its own.
+    ///
+    /// # Errors
+    /// Why the model has no adjoint boundary conditions.
+    pub fn adjoint(&self) -> Result<&LinearProblem> {
+        let made = self.adjoint.get_or_init(|| {
+            let mut points = Points { model: self.model, base: self.base, known: Vec::new() };
+            Self::adjoint_problem(&mut points, self.resolution)
+        });
+        made.as_ref().map_err(Clone::clone)
+    }
+
+    fn direct(points: &mut Points, resolution: usize) -> Result<LinearProblem> {
+        let (model, base) = (points.model, points.base);
         let structure = model.structure();
         let walls = conditions::direct(model, base);
         let profiles = structure.profiles();
@@ -77,20 +121,14 @@ impl<'m> Problem<'m> {
             (0..profiles).map(|f| walls.iter().filter(|w| w.owner == f).count()).collect();
         let layout = layout(structure, &counts, &structure.pairing, resolution)?;
         let (column_turns, row_turns) = turns(structure);
-        let terms = terms(model, base, &layout, KernelId::Linear)?;
+        let terms = terms(points, &layout, KernelId::Linear)?;
         Ok(LinearProblem::new(layout, terms, walls, column_turns, row_turns))
     }
 
-    fn adjoint(
-        model: &dyn Model,
-        base: &BaseState,
-        resolution: usize,
-    ) -> Result<std::result::Result<LinearProblem, String>> {
+    fn adjoint_problem(points: &mut Points, resolution: usize) -> Result<LinearProblem> {
+        let (model, base) = (points.model, points.base);
         let structure = model.structure();
-        let walls = match conditions::adjoint(model, base) {
-            Ok(walls) => walls,
-            Err(reason) => return Ok(Err(reason)),
-        };
+        let walls = conditions::adjoint(model, base).map_err(Error::Computation)?;
         let profiles = structure.profiles();
         // Columns are balances; the row of field f belongs to the balance paired with it.
         let pairing: Vec<usize> = (0..profiles)
@@ -100,8 +138,8 @@ impl<'m> Problem<'m> {
             (0..profiles).map(|b| walls.iter().filter(|w| w.owner == b).count()).collect();
         let layout = layout(structure, &counts, &pairing, resolution)?;
         let (column_turns, row_turns) = turns(structure);
-        let terms = terms(model, base, &layout, KernelId::Adjoint)?;
-        Ok(Ok(LinearProblem::new(layout, terms, walls, row_turns, column_turns)))
+        let terms = terms(points, &layout, KernelId::Adjoint)?;
+        Ok(LinearProblem::new(layout, terms, walls, row_turns, column_turns))
     }
 
     pub fn structure(&self) -> &Structure {
@@ -167,11 +205,11 @@ fn turns(structure: &Structure) -> (Vec<usize>, Vec<usize>) {
 }
 
 fn terms(
-    model: &dyn Model,
-    base: &BaseState,
+    points: &mut Points,
     layout: &Layout,
     kernel: KernelId,
 ) -> Result<Vec<(usize, Jet, Vec<f64>)>> {
+    let (model, base) = (points.model, points.base);
     let structure = model.structure();
     let infos = if kernel == KernelId::Linear { &structure.linear } else { &structure.adjoint };
     let mut terms: Vec<(usize, Jet, Vec<f64>)> =
@@ -179,11 +217,8 @@ fn terms(
     let mut cache: Vec<(GridKind, Vec<Vec<f64>>)> = Vec::new();
     for (row, block) in layout.rows.iter().enumerate() {
         if !cache.iter().any(|(kind, _)| *kind == block.grid) {
-            let nodes = Grid::new(block.grid).nodes;
-            let values: Vec<Vec<f64>> = nodes
-                .iter()
-                .map(|&xi| evaluate(model, kernel, &base.point(model, xi, 0.0)))
-                .collect();
+            let states = points.at(block.grid).iter();
+            let values: Vec<Vec<f64>> = states.map(|p| evaluate(model, kernel, p)).collect();
             cache.push((block.grid, values));
         }
         let Some((_, values)) = cache.iter().find(|(kind, _)| *kind == block.grid) else { continue };
@@ -201,4 +236,36 @@ fn terms(
         }
     }
     Ok(terms)
+}
+
+/// ∫ w|q|² dy of each weighted field as a quadratic form, exact for polynomial weights up to M.
+fn gram(
+    model: &dyn Model,
+    base: &BaseState,
+    layout: &Layout,
+    discretisation: &Discretisation,
+    resolution: usize,
+) -> Vec<Mat<f64>> {
+    let fields = &model.structure().amplitude.weighted;
+    let (grid, half) = match resolution {
+        0 => (GridKind::Point, 0.5),
+        m => (GridKind::Lobatto(3 * m + 1), 0.5 * (base.upper - base.lower)),
+    };
+    if fields.is_empty() {
+        return Vec::new();
+    }
+    let nodes = Grid::new(grid).nodes;
+    let quadrature = clenshaw_curtis(nodes.len());
+    let weights: Vec<Vec<f64>> = nodes
+        .iter()
+        .map(|&xi| evaluate(model, KernelId::Amplitude, &base.point(model, xi, 0.0)))
+        .collect();
+    let form = |(position, &field): (usize, &usize)| {
+        let values = discretisation.matrix(layout.columns[field].grid, grid, 0);
+        let weighted = Mat::from_fn(values.nrows(), values.ncols(), |i, j| {
+            values[(i, j)] * quadrature[i] * half * weights[i][position]
+        });
+        values.transpose() * &weighted
+    };
+    fields.iter().enumerate().map(form).collect()
 }

@@ -40,7 +40,7 @@ pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<
         found.c2 = found.c2.max((c2 - point.c2).norm());
     }
     let problem = point.expansion.problem;
-    if problem.adjoint.is_ok() {
+    if problem.adjoint().is_ok() {
         let adjoint = adjoint_mode(problem, k, point.c0)?;
         found.c0 = found.c0.max((adjoint.c.conj() - point.c0).norm());
         if let Some(c2) = second_landau(point, &adjoint)? {

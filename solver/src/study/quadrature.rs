@@ -21,7 +21,7 @@ pub struct AdjointMode {
 /// # Errors
 /// A model without adjoint boundary conditions, or an iteration that does not converge.
 pub fn adjoint_mode(problem: &Problem, k: f64, c0: C64) -> Result<AdjointMode> {
-    let adjoint = problem.adjoint.as_ref().map_err(|reason| Error::computation(reason.clone()))?;
+    let adjoint = problem.adjoint()?;
     let shift = c0.conj() + C64::new(1e-7 * c0.norm().max(1e-3), 0.0);
     let (operator, mass) = problem.pencil_of::<C64>(adjoint, k);
     let n = mass.nrows();
@@ -70,7 +70,7 @@ pub fn second_landau(point: &LandauPoint, adjoint: &AdjointMode) -> Result<Optio
     if problem.direct.walls.iter().any(|w| !w.nonlinear.is_empty()) {
         return Ok(None);
     }
-    let layout = &problem.adjoint.as_ref().map_err(|r| Error::computation(r.clone()))?.layout;
+    let layout = &problem.adjoint()?.layout;
     let structure = problem.structure();
     let k = point.expansion.k;
     let grid = quadrature_grid(problem);

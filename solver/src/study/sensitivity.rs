@@ -78,7 +78,7 @@ pub fn wavenumber(problem: &Problem, pair: &EigenPair) -> C64 {
         pair.k,
         combination,
     );
-    let (_, mass) = problem.pencil::<C64>(pair.k);
+    let mass = problem.mass::<C64>(pair.k);
     let above = dot(&pair.left, &apply(derivative.as_ref(), &pair.right));
     above / dot(&pair.left, &apply(mass.as_ref(), &pair.right))
 }

@@ -7,7 +7,9 @@
 use super::{Axis, Carried, Setup};
 use crate::error::{Error, Result};
 use crate::model::C64;
-use crate::weakly::Selection;
+use crate::problem::Problem;
+use crate::spectrum::EigenPair;
+use crate::weakly::{self, Selection};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -18,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
 /// Points of the first axis that one worker follows.
-const CHUNK: usize = 16;
+const CHUNK: usize = 40;
 
 /// Evenly spaced values along one axis.
 #[derive(Clone, Debug)]
@@ -127,71 +129,69 @@ impl Sweep<'_, '_> {
             line /= range.values.len();
         }
         let coordinates = |x: f64| std::iter::once(x).chain(others.iter().copied()).collect::<Vec<f64>>();
-        // Which end leads?
-        let ends = [0, points.len() - 1].map(|i| self.evaluate(&coordinates(points[i]), None));
-        let growth = |end: &Result<(Row, Carried)>| {
-            end.as_ref().map_or(f64::NEG_INFINITY, |(_, carried)| carried.pair.c.re)
-        };
-        let backwards = growth(&ends[1]) > growth(&ends[0]);
-        let mut order: Vec<usize> = (0..points.len()).collect();
-        if backwards {
-            order.reverse();
+        let places: Vec<Vec<f64>> = points.iter().map(|&x| coordinates(x)).collect();
+        if self.ranges[0].axis != Axis::Wavenumber {
+            let step = |place: &[f64], near: Option<&Carried>| self.evaluate(place, near);
+            return follow(&places, |carried: &Carried| carried.pair.c.re, step, progress);
         }
-        let mut rows: Vec<Option<Row>> = vec![None; points.len()];
-        let mut carried: Option<Carried> = None;
-        let mut seed = Some(ends).map(|[a, b]| if backwards { b } else { a });
-        for index in order {
-            let place = coordinates(points[index]);
-            let outcome = match seed.take() {
-                Some(outcome) => outcome,
-                None => self.evaluate(&place, carried.as_ref()),
-            };
-            rows[index] = Some(match outcome {
-                Ok((row, next)) => {
-                    carried = Some(next);
-                    row
-                }
-                Err(error) => failed(place, &error),
-            });
-            progress.inc(1);
-        }
-        rows.into_iter().flatten().collect()
+        // One base state and one set of coefficients serve the whole line.
+        let line = self.at(&places[0]).and_then(|(setup, _)| {
+            let base = setup.base(None)?;
+            setup.with_problem(&base, |problem| {
+                let step = |place: &[f64], near: Option<&EigenPair>| self.row(problem, place, place[0], near);
+                Ok(follow(&places, |pair: &EigenPair| pair.c.re, step, progress))
+            })
+        });
+        line.unwrap_or_else(|error| {
+            progress.inc(places.len() as u64);
+            places.into_iter().map(|place| failed(place, &error)).collect()
+        })
     }
 
-    fn evaluate(&self, place: &[f64], near: Option<&Carried>) -> Result<(Row, Carried)> {
+    /// The setup and the wavenumber of a place.
+    fn at(&self, place: &[f64]) -> Result<(Setup<'_>, f64)> {
         let mut setup = self.setup.clone();
         let mut k = self.k.unwrap_or(0.0);
-        let mut fixed_base = true;
         for (range, &value) in self.ranges.iter().zip(place) {
             match range.axis {
                 Axis::Wavenumber => k = value,
-                axis => {
-                    setup = setup.moved(axis, value)?;
-                    fixed_base &= range.values.len() == 1 || range.name != self.ranges[0].name;
-                }
+                axis => setup = setup.moved(axis, value)?,
             }
         }
-        let base = match near {
-            Some(carried) if fixed_base => carried.base.clone(),
-            _ => setup.base(near.map(|c| &c.base))?,
-        };
+        Ok((setup, k))
+    }
+
+    /// A point whose base state is its own.
+    fn evaluate(&self, place: &[f64], near: Option<&Carried>) -> Result<(Row, Carried)> {
+        let (setup, k) = self.at(place)?;
+        let base = setup.base(near.map(|c| &c.base))?;
+        let (row, pair) =
+            setup.with_problem(&base, |problem| self.row(problem, place, k, near.map(|c| &c.pair)))?;
+        Ok((row, Carried { base, pair }))
+    }
+
+    fn row(
+        &self,
+        problem: &Problem,
+        place: &[f64],
+        k: f64,
+        near: Option<&EigenPair>,
+    ) -> Result<(Row, EigenPair)> {
         let selection = match (near, self.near) {
-            (Some(carried), _) => Selection::Like(&carried.pair),
+            (Some(pair), _) => Selection::Like(pair),
             (None, Some(target)) => Selection::Near(target),
             (None, None) => Selection::Leading,
         };
-        let (row, pair) = setup.with_point(&base, k, selection, |point| {
-            let row = Row {
-                coordinates: place.to_vec(),
-                c0: Some([point.c0.re, point.c0.im]),
-                c2: Some([point.c2.re, point.c2.im]),
-                amplitude: point.amplitude(),
-                bifurcation: point.bifurcation(),
-                status: "ok".into(),
-            };
-            Ok((row, point.expansion.pair.clone()))
-        })?;
-        Ok((row, Carried { base, pair }))
+        let point = weakly::point(problem, k, selection)?;
+        let row = Row {
+            coordinates: place.to_vec(),
+            c0: Some([point.c0.re, point.c0.im]),
+            c2: Some([point.c2.re, point.c2.im]),
+            amplitude: point.amplitude(),
+            bifurcation: point.bifurcation(),
+            status: "ok".into(),
+        };
+        Ok((row, point.expansion.pair))
     }
 
     /// The table as CSV.
@@ -237,6 +237,40 @@ impl Sweep<'_, '_> {
             checksum(&text.concat())
         )
     }
+}
+
+/// Rows of a chunk: the mode of the more unstable end, followed to the other.
+fn follow<C>(
+    places: &[Vec<f64>],
+    growth: impl Fn(&C) -> f64,
+    step: impl Fn(&[f64], Option<&C>) -> Result<(Row, C)>,
+    progress: &ProgressBar,
+) -> Vec<Row> {
+    let last = places.len() - 1;
+    let ends = [0, last].map(|i| step(&places[i], None));
+    let [first_growth, last_growth] =
+        [&ends[0], &ends[1]].map(|end| end.as_ref().map_or(f64::NEG_INFINITY, |(_, c)| growth(c)));
+    let [first, second] = ends;
+    let backwards = last_growth > first_growth;
+    let mut order: Vec<usize> = (0..places.len()).collect();
+    if backwards {
+        order.reverse();
+    }
+    let mut seed = Some(if backwards { second } else { first });
+    let mut rows: Vec<Option<Row>> = vec![None; places.len()];
+    let mut carried: Option<C> = None;
+    for index in order {
+        let outcome = seed.take().unwrap_or_else(|| step(&places[index], carried.as_ref()));
+        rows[index] = Some(match outcome {
+            Ok((row, next)) => {
+                carried = Some(next);
+                row
+            }
+            Err(error) => failed(places[index].clone(), &error),
+        });
+        progress.inc(1);
+    }
+    rows.into_iter().flatten().collect()
 }
 
 fn failed(coordinates: Vec<f64>, error: &Error) -> Row {

@@ -16,7 +16,7 @@ use serde::Serialize;
 
 pub use adjointness::duality;
 pub use forms::second_route;
-pub use order::{defects, slope};
+pub use order::{defects, floor, slope};
 
 /// One line of the certificate.
 #[derive(Clone, Debug, Serialize)]
@@ -66,7 +66,7 @@ pub fn verify(setup: &Setup, k: f64, selection: Selection) -> Result<Vec<Check>>
 /// Part 3: both routes to c2, biorthogonality.
 fn routes(point: &LandauPoint) -> Result<Vec<Check>> {
     let problem = point.expansion.problem;
-    if let Err(reason) = &problem.adjoint {
+    if let Err(reason) = problem.adjoint() {
         return Ok(vec![Check::report(3, "continuous adjoint", 0.0, format!("left out: {reason}"))]);
     }
     let adjoint = adjoint_mode(problem, point.expansion.k, point.c0)?;

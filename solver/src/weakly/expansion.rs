@@ -106,7 +106,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let n = self.problem.direct.layout.size;
         let right = self.forcing(key);
         let matrix = self.problem.shifted::<T>(self.k, self.shift(key));
-        let (_, mass) = self.problem.pencil::<T>(self.k);
+        let mass = self.problem.mass::<T>(self.k);
         let fundamental = self.solver_basis(&self.modes[&(1, 1)].values);
         let fundamental: Vec<T> = fundamental.iter().map(|&v| T::from_complex(v)).collect();
         let column = crate::dense::apply(mass.as_ref(), &fundamental);
@@ -187,7 +187,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
             }
             let Some(c) = self.landau.get((m - q) / 2) else { continue };
             let factor = C64::new(q as f64 * c.re, k as f64 * c.im);
-            let (_, mass) = self.problem.pencil::<C64>(k as f64 * self.k);
+            let mass = self.problem.mass::<C64>(k as f64 * self.k);
             let values = self.solver_basis(&mode.values);
             let product = crate::dense::apply(mass.as_ref(), &values);
             right.iter_mut().zip(product).for_each(|(r, p)| *r -= factor * p);

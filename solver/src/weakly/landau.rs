@@ -109,7 +109,7 @@ impl<'p, 'm> LandauPoint<'p, 'm> {
 impl Expansion<'_, '_> {
     /// ⟨left vector, forcing⟩ / ⟨left vector, M0 X[1;1]⟩ with the discrete left vector.
     pub fn project(&self, forcing: &[C64]) -> C64 {
-        let (_, mass) = self.problem.pencil::<C64>(self.k);
+        let mass = self.problem.mass::<C64>(self.k);
         let turns = self.problem.physical(&vec![C64::new(1.0, 0.0); forcing.len()]);
         let fundamental: Vec<C64> =
             self.modes[&(1, 1)].values.iter().zip(turns).map(|(v, t)| v / t).collect();

@@ -1,9 +1,8 @@
 //! The normalisation that the spec asks for, and the rule that fixes the phase.
 
-use super::mode::Mode;
 use crate::collocation::{Grid, GridKind, clenshaw_curtis};
 use crate::error::{Error, Result};
-use crate::model::{C64, Jet, KernelId, evaluate};
+use crate::model::{C64, KernelId, evaluate};
 use crate::problem::Problem;
 
 /// The factor by which the fundamental has to be multiplied.
@@ -17,18 +16,16 @@ use crate::problem::Problem;
 pub fn normalise(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
     let structure = problem.structure();
     let amplitude = &structure.amplitude;
-    let zero = vec![C64::new(0.0, 0.0); values.len()];
-    let mode = Mode { harmonic: 1, values: values.to_vec(), rate: zero, uniform: Vec::new() };
     if let Some(field) = amplitude.field {
         let out = evaluate(problem.model, KernelId::Amplitude, &problem.base.point(problem.model, 0.0, k));
         let (wanted, place) = (out[0].abs(), out[1]);
-        let value = point_value(problem, &mode, field, place);
+        let value = point_value(problem, values, field, place);
         if value.norm() < 1e-12 * values.iter().map(|v| v.norm()).fold(0.0, f64::max) {
             return Err(vanishes(problem));
         }
         return Ok(value.conj() / value.norm_sqr() * wanted);
     }
-    let (square, wanted) = weighted_square(problem, k, &mode);
+    let (square, wanted) = weighted_square(problem, k, values);
     if !(square > 0.0 && wanted > 0.0) {
         return Err(vanishes(problem));
     }
@@ -42,9 +39,9 @@ fn vanishes(problem: &Problem) -> Error {
     ))
 }
 
-fn point_value(problem: &Problem, mode: &Mode, field: usize, place: f64) -> C64 {
+fn point_value(problem: &Problem, values: &[C64], field: usize, place: f64) -> C64 {
     let block = &problem.direct.layout.columns[field];
-    let values = &mode.values[block.offset..block.offset + block.len];
+    let values = &values[block.offset..block.offset + block.len];
     if problem.resolution == 0 {
         return values[0];
     }
@@ -54,24 +51,20 @@ fn point_value(problem: &Problem, mode: &Mode, field: usize, place: f64) -> C64 
 }
 
 /// ∫ Σ w|q|² dy and the value it should have.
-fn weighted_square(problem: &Problem, k: f64, mode: &Mode) -> (f64, f64) {
+fn weighted_square(problem: &Problem, k: f64, values: &[C64]) -> (f64, f64) {
     let fields = &problem.structure().amplitude.weighted;
-    let kernel = KernelId::Amplitude;
-    let quadrature = quadrature_grid(problem);
-    let weights = quadrature_weights(problem, quadrature);
-    let jets: Vec<Jet> = fields.iter().map(|&f| Jet::value(f)).collect();
-    let profiles: Vec<Vec<C64>> =
-        jets.iter().map(|&jet| mode.jet(problem, k, jet, quadrature)).collect();
-    let nodes = Grid::new(quadrature).nodes;
-    let (mut square, mut wanted) = (0.0, 0.0);
-    for (i, &xi) in nodes.iter().enumerate() {
-        let out = evaluate(problem.model, kernel, &problem.base.point(problem.model, xi, k));
-        for (f, profile) in profiles.iter().enumerate() {
-            square += weights[i] * out[f] * profile[i].norm_sqr();
+    let mut square = 0.0;
+    for (&field, gram) in fields.iter().zip(&problem.gram) {
+        let block = &problem.direct.layout.columns[field];
+        let own = &values[block.offset..block.offset + block.len];
+        for (j, y) in own.iter().enumerate() {
+            let column = gram.col(j);
+            let product: C64 = own.iter().zip(column.iter()).map(|(x, g)| x.conj() * *g).sum();
+            square += (product * y).re;
         }
-        wanted = out[fields.len()];
     }
-    (square, wanted)
+    let point = problem.base.point(problem.model, 0.0, k);
+    (square, evaluate(problem.model, KernelId::Amplitude, &point)[fields.len()])
 }
 
 /// A grid on which products of two profiles integrate exactly.

@@ -16,7 +16,7 @@ const DEGREE: usize = 11;
 
 pub(super) fn check(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Vec<Check>> {
     let problem = point.expansion.problem;
-    if let Err(reason) = &problem.adjoint {
+    if let Err(reason) = problem.adjoint() {
         return Ok(vec![Check::report(2, "duality", 0.0, format!("left out: {reason}"))]);
     }
     let k = point.expansion.k;
@@ -48,7 +48,7 @@ pub(super) fn check(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Res
 
 /// |⟨Y, L X⟩ − ⟨L†Y, X⟩| over the sum of the moduli.
 pub fn duality(problem: &Problem, k: f64, seed: u64) -> f64 {
-    let Ok(adjoint) = &problem.adjoint else { return f64::NAN };
+    let Ok(adjoint) = problem.adjoint() else { return f64::NAN };
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9).wrapping_add(12345));
     let structure = problem.structure();
     let x = admissible(&problem.direct, problem, k, &mut random);

@@ -23,11 +23,8 @@ const SLOPE: f64 = 4.0;
 pub(super) fn check(point: &LandauPoint) -> Result<Vec<Check>> {
     let expansion = point.third_order()?;
     let list = defects(&expansion);
-    let floor = defect(&expansion, 0.0);
-    let (slope, amplitude) = slope(&list, floor);
-    let detail = format!(
-        "log2 of the ratio of defects at A = {amplitude:.2e} and its half; floor {floor:.1e}"
-    );
+    let (slope, amplitude) = slope(&list, &floor(&expansion));
+    let detail = format!("log2 of the ratio of defects at A = {amplitude:.2e} and its half");
     let passed = slope.is_finite() && slope >= SLOPE * 0.98;
     let name = "order of the residual in A".to_owned();
     Ok(vec![Check { part: 1, name, value: slope, bound: SLOPE * 0.98, passed, detail }])
@@ -35,6 +32,15 @@ pub(super) fn check(point: &LandauPoint) -> Result<Vec<Check>> {
 
 /// Amplitudes and defects, each amplitude half the one before.
 pub fn defects(expansion: &Expansion) -> Vec<(f64, f64)> {
+    let start = start(expansion);
+    (0..HALVINGS)
+        .map(|i| start / f64::powi(2.0, i as i32))
+        .map(|amplitude| (amplitude, defect(expansion, amplitude)))
+        .collect()
+}
+
+/// An amplitude at which the series still makes sense.
+fn start(expansion: &Expansion) -> f64 {
     let largest = expansion.modes[&(1, 1)].values.iter().map(|v| v.norm()).fold(1e-300, f64::max);
     let second = [(0, 2), (2, 2)]
         .iter()
@@ -43,17 +49,21 @@ pub fn defects(expansion: &Expansion) -> Vec<(f64, f64)> {
         .map(|v| v.norm())
         .fold(1e-300, f64::max);
     // Where second order catches up with first, the series is of no use.
-    let start = 0.1 * (1.0 / largest).min(largest / second);
-    (0..HALVINGS)
-        .map(|i| start / f64::powi(2.0, i as i32))
-        .map(|amplitude| (amplitude, defect(expansion, amplitude)))
-        .collect()
+    0.1 * (1.0 / largest).min(largest / second)
+}
+
+/// What rounding leaves of the defect: at A = 0, and for each unit of A (from an amplitude so small
+/// that A⁴ is nothing).
+pub fn floor(expansion: &Expansion) -> (f64, f64) {
+    let rest = defect(expansion, 0.0);
+    let tiny = start(expansion) * 1e-9;
+    (rest, (defect(expansion, tiny) - rest).max(0.0) / tiny)
 }
 
 /// The slope between the two smallest amplitudes whose defects stand clear of the floor.
-pub fn slope(defects: &[(f64, f64)], floor: f64) -> (f64, f64) {
-    let clear = |d: f64| d > ABOVE_FLOOR * floor && d > 0.0;
-    let pairs = defects.windows(2).filter(|w| clear(w[1].1));
+pub fn slope(defects: &[(f64, f64)], floor: &(f64, f64)) -> (f64, f64) {
+    let clear = |&(a, d): &(f64, f64)| d > ABOVE_FLOOR * (floor.0 + floor.1 * a) && d > 0.0;
+    let pairs = defects.windows(2).filter(|w| clear(&w[1]));
     pairs.last().map_or((f64::NAN, f64::NAN), |w| ((w[0].1 / w[1].1).log2(), w[0].0))
 }
 
