@@ -11,7 +11,8 @@ use std::{env, fs, io};
 ///
 /// Mistakes are printed as `cargo::error=` lines and end the build script.
 pub fn run() {
-    if let Err(mistakes) = generate_all() {
+    let outcome = directories().and_then(|(root, out)| generate_folder(&root, &out));
+    if let Err(mistakes) = outcome {
         for line in mistakes.lines() {
             println!("cargo::error={line}");
         }
@@ -19,20 +20,33 @@ pub fn run() {
     }
 }
 
-fn generate_all() -> Result<(), String> {
+/// Where the crate is and where its generated code goes.
+fn directories() -> Result<(PathBuf, PathBuf), String> {
     let directory = |name: &str| {
-        env::var_os(name).map(PathBuf::from).ok_or_else(|| format!("{name} is not set: run this from a build script"))
+        env::var_os(name)
+            .map(PathBuf::from)
+            .ok_or_else(|| format!("{name} is not set: run this from a build script"))
     };
-    let (root, out) = (directory("CARGO_MANIFEST_DIR")?, directory("OUT_DIR")?);
     println!("cargo::rerun-if-changed=models");
     println!("cargo::rerun-if-changed=laws");
+    Ok((directory("CARGO_MANIFEST_DIR")?, directory("OUT_DIR")?))
+}
+
+/// Generates `out/models.rs` from the `models/` and `laws/` of the crate at `root`.
+///
+/// # Errors
+/// The mistakes of all specs, as text.
+pub fn generate_folder(root: &Path, out: &Path) -> Result<(), String> {
     let laws = read_laws(&root.join("laws")).map_err(|e| e.to_string())?;
     let (mut index, mut list, mut errors) = (String::new(), String::new(), String::new());
     let mut names: BTreeMap<String, String> = BTreeMap::new();
     for path in files(&root.join("models"), "model").map_err(|e| e.to_string())? {
-        let spec = read(&path, &root).map_err(|e| e.to_string())?;
+        let spec = read(&path, root).map_err(|e| e.to_string())?;
         let file = spec.path.clone();
-        let (name, title, code) = match generate_module(Sources { spec, laws: laws.clone() }) {
+        let (name, title, code) = match generate_module(Sources {
+            spec,
+            laws: laws.clone(),
+        }) {
             Ok(module) => module,
             Err(mistakes) => {
                 errors += &mistakes.render();
@@ -64,7 +78,11 @@ fn generate_all() -> Result<(), String> {
 pub fn generate_module(sources: Sources) -> Result<(String, String, String), Diagnostics> {
     let (derivation, kernels) = generate(&sources)?;
     let code = emit::rust::module(&derivation, &kernels);
-    Ok((derivation.model.name.clone(), derivation.model.title.clone(), code))
+    Ok((
+        derivation.model.name.clone(),
+        derivation.model.title.clone(),
+        code,
+    ))
 }
 
 /// The law files of a folder by name; none where there is no such folder.
@@ -75,7 +93,11 @@ pub fn read_laws(folder: &Path) -> io::Result<BTreeMap<String, SourceFile>> {
     }
     let root = folder.parent().unwrap_or(folder);
     for path in files(folder, "law")? {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
         laws.insert(name, read(&path, root)?);
     }
     Ok(laws)
@@ -84,7 +106,10 @@ pub fn read_laws(folder: &Path) -> io::Result<BTreeMap<String, SourceFile>> {
 /// A spec with the law files beside it: in `laws/` next to it, or next to its folder.
 pub fn read_sources(path: &Path) -> io::Result<Sources> {
     let text = fs::read_to_string(path)?;
-    let spec = SourceFile { path: path.display().to_string(), text };
+    let spec = SourceFile {
+        path: path.display().to_string(),
+        text,
+    };
     let folder = path.parent().unwrap_or(Path::new("."));
     let mut laws = read_laws(&folder.join("laws"))?;
     if laws.is_empty() {
@@ -108,5 +133,8 @@ fn files(folder: &Path, extension: &str) -> io::Result<Vec<PathBuf>> {
 fn read(path: &Path, root: &Path) -> io::Result<SourceFile> {
     let text = fs::read_to_string(path)?;
     let shown = path.strip_prefix(root).unwrap_or(path);
-    Ok(SourceFile { path: shown.display().to_string(), text })
+    Ok(SourceFile {
+        path: shown.display().to_string(),
+        text,
+    })
 }

@@ -37,7 +37,12 @@ impl Diagnostic {
         message: impl Into<String>,
         expected: impl Into<String>,
     ) -> Self {
-        Diagnostic { location, message: message.into(), expected: expected.into(), hint: None }
+        Diagnostic {
+            location,
+            message: message.into(),
+            expected: expected.into(),
+            hint: None,
+        }
     }
 
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
@@ -70,11 +75,16 @@ impl Diagnostics {
         for diagnostic in list {
             let file = &self.files[diagnostic.location.file];
             let range = clamp(&file.text, &diagnostic.location.range);
-            let snippet = Snippet::source(file.text.as_str()).path(file.path.as_str()).annotation(
-                AnnotationKind::Primary.span(range).label(diagnostic.expected.as_str()),
-            );
-            let mut group =
-                Level::ERROR.primary_title(diagnostic.message.as_str()).element(snippet);
+            let snippet = Snippet::source(file.text.as_str())
+                .path(file.path.as_str())
+                .annotation(
+                    AnnotationKind::Primary
+                        .span(range)
+                        .label(diagnostic.expected.as_str()),
+                );
+            let mut group = Level::ERROR
+                .primary_title(diagnostic.message.as_str())
+                .element(snippet);
             if let Some(hint) = &diagnostic.hint {
                 group = group.element(Level::HELP.message(hint.as_str()));
             }
@@ -112,7 +122,9 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     candidates
         .into_iter()
         .map(|candidate| (distance(name, candidate), candidate))
-        .filter(|&(d, candidate)| d <= 1 + candidate.chars().count() / 4 && d < name.chars().count())
+        .filter(|&(d, candidate)| {
+            d <= 1 + candidate.chars().count() / 4 && d < name.chars().count()
+        })
         .min_by_key(|&(d, _)| d)
         .map(|(_, candidate)| candidate)
 }

@@ -40,7 +40,9 @@ pub struct Sources {
 ///
 /// # Errors
 /// Everything that is wrong with the form of the spec, in one run.
-pub fn generate(sources: &Sources) -> Result<(derive::Derivation, kernel::ModelKernels), Diagnostics> {
+pub fn generate(
+    sources: &Sources,
+) -> Result<(derive::Derivation, kernel::ModelKernels), Diagnostics> {
     let model = model::resolve(sources)?;
     let mut derivation = derive::derive(model, ORDER)?;
     let kernels = kernel::kernels(&mut derivation);

@@ -299,7 +299,11 @@ impl Literal for f64 {
             quote!(f64::NEG_INFINITY)
         } else {
             let size = proc_macro2::Literal::f64_unsuffixed(self.abs());
-            if self.is_sign_negative() { quote!(-#size) } else { quote!(#size) }
+            if self.is_sign_negative() {
+                quote!(-#size)
+            } else {
+                quote!(#size)
+            }
         }
     }
 }
@@ -346,7 +350,13 @@ impl<T: Literal, E: Literal> Literal for Result<T, E> {
 
 impl Literal for Jet {
     fn literal(&self) -> TokenStream {
-        let Jet { field, t, x, absx, y } = self;
+        let Jet {
+            field,
+            t,
+            x,
+            absx,
+            y,
+        } = self;
         let [field, t, x, absx, y] = [field, t, x, absx, y].map(Literal::literal);
         quote!(s::jet(#field, #t, #x, #absx, #y))
     }
@@ -354,7 +364,13 @@ impl Literal for Jet {
 
 /// Shorthand for literals in emitted code.
 pub fn jet(field: u8, t: u8, x: u8, absx: u8, y: u8) -> Jet {
-    Jet { field, t, x, absx, y }
+    Jet {
+        field,
+        t,
+        x,
+        absx,
+        y,
+    }
 }
 
 impl Literal for End {

@@ -72,14 +72,20 @@ impl<T: Scalar> Factorised<T> {
                 *size = size.max(matrix[(i, j)].complex().norm());
             }
         }
-        let scale: Vec<f64> = largest.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 1.0 }).collect();
+        let scale: Vec<f64> = largest
+            .iter()
+            .map(|&m| if m > 0.0 { 1.0 / m } else { 1.0 })
+            .collect();
         for j in 0..n {
             for (i, &factor) in scale.iter().enumerate() {
                 let entry = &mut matrix[(i, j)];
                 *entry = T::from_complex(entry.complex() * factor);
             }
         }
-        Factorised { lu: matrix.partial_piv_lu(), scale }
+        Factorised {
+            lu: matrix.partial_piv_lu(),
+            scale,
+        }
     }
 
     /// A⁻¹ b
@@ -94,8 +100,11 @@ impl<T: Scalar> Factorised<T> {
     /// A⁻ᴴ b
     pub fn solve_adjoint(&self, right: &[T]) -> Vec<T> {
         let mut x = Mat::from_fn(right.len(), 1, |i, _| right[i]);
-        self.lu.solve_transpose_in_place_with_conj(Conj::Yes, x.as_mut());
-        (0..right.len()).map(|i| T::from_complex(x[(i, 0)].complex() * self.scale[i])).collect()
+        self.lu
+            .solve_transpose_in_place_with_conj(Conj::Yes, x.as_mut());
+        (0..right.len())
+            .map(|i| T::from_complex(x[(i, 0)].complex() * self.scale[i]))
+            .collect()
     }
 }
 
@@ -115,7 +124,10 @@ pub fn apply_adjoint<T: Scalar>(matrix: MatRef<'_, T>, x: &[T]) -> Vec<T> {
 
 /// Σ conj(x) y
 pub fn dot<T: Scalar>(x: &[T], y: &[T]) -> C64 {
-    x.iter().zip(y).map(|(a, b)| a.complex().conj() * b.complex()).sum()
+    x.iter()
+        .zip(y)
+        .map(|(a, b)| a.complex().conj() * b.complex())
+        .sum()
 }
 
 /// √Σ|x|²
@@ -125,5 +137,7 @@ pub fn norm<T: Scalar>(x: &[T]) -> f64 {
 
 /// Scales a vector by a number of its own kind.
 pub fn scaled<T: Scalar>(x: &[T], factor: C64) -> Vec<T> {
-    x.iter().map(|a| T::from_complex(a.complex() * factor)).collect()
+    x.iter()
+        .map(|a| T::from_complex(a.complex() * factor))
+        .collect()
 }

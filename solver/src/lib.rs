@@ -1,9 +1,9 @@
-pub mod model;
 pub mod base;
 pub mod cli;
 pub mod collocation;
 pub mod dense;
 pub mod error;
+pub mod model;
 pub mod parameters;
 pub mod problem;
 pub mod spectrum;

@@ -25,16 +25,28 @@ impl Parameters {
     /// # Errors
     /// Names the parameters there are.
     pub fn index(structure: &Structure, name: &str) -> Result<usize> {
-        structure.parameters.iter().position(|p| p.name == name).ok_or_else(|| {
-            let names: Vec<&str> = structure.parameters.iter().map(|p| p.name.as_str()).collect();
-            let near = nearest(name, names.iter().copied());
-            let near = near.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
-            Error::input(format!(
-                "the model `{}` has no parameter `{name}`: it has {}{near}",
-                structure.name,
-                if names.is_empty() { "none".into() } else { names.join(", ") }
-            ))
-        })
+        structure
+            .parameters
+            .iter()
+            .position(|p| p.name == name)
+            .ok_or_else(|| {
+                let names: Vec<&str> = structure
+                    .parameters
+                    .iter()
+                    .map(|p| p.name.as_str())
+                    .collect();
+                let near = nearest(name, names.iter().copied());
+                let near = near.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
+                Error::input(format!(
+                    "the model `{}` has no parameter `{name}`: it has {}{near}",
+                    structure.name,
+                    if names.is_empty() {
+                        "none".into()
+                    } else {
+                        names.join(", ")
+                    }
+                ))
+            })
     }
 
     /// Sets a parameter to a number.
@@ -73,16 +85,26 @@ impl Parameters {
             return Ok(());
         }
         let value: f64 = text.parse().map_err(|_| {
-            Error::input(format!("{name} = {text} is not a value: `{name}` accepts {}", accepts(structure, index)))
+            Error::input(format!(
+                "{name} = {text} is not a value: `{name}` accepts {}",
+                accepts(structure, index)
+            ))
         })?;
         self.set(structure, index, value)
     }
 
     /// Position of the case that the structural switches select.
     pub fn case(&self, structure: &Structure) -> usize {
-        let chosen: Vec<usize> =
-            structure.switches.iter().map(|&switch| self.values[switch] as usize).collect();
-        structure.cases.iter().position(|case| case.choices == chosen).unwrap_or(0)
+        let chosen: Vec<usize> = structure
+            .switches
+            .iter()
+            .map(|&switch| self.values[switch] as usize)
+            .collect();
+        structure
+            .cases
+            .iter()
+            .position(|case| case.choices == chosen)
+            .unwrap_or(0)
     }
 
     /// The value of a parameter as the user writes it.

@@ -54,7 +54,11 @@ pub fn adjoint_eigenvalues(problem: &Problem, k: f64) -> Result<Vec<C64>> {
 
 /// L and M0, bordered at k = 0.
 fn pencil<T: Scalar>(problem: &Problem, k: f64) -> (Mat<T>, Mat<T>) {
-    if k == 0.0 { problem.bordered_pencil() } else { problem.pencil(k) }
+    if k == 0.0 {
+        problem.bordered_pencil()
+    } else {
+        problem.pencil(k)
+    }
 }
 
 fn eigenvalues_of<T: Scalar>((operator, mass): (Mat<T>, Mat<T>)) -> Result<Vec<C64>> {
@@ -63,7 +67,9 @@ fn eigenvalues_of<T: Scalar>((operator, mass): (Mat<T>, Mat<T>)) -> Result<Vec<C
     let inverse = reduced.shift_invert(shift);
     let values = T::eigenvalues(inverse.as_ref())
         .ok_or_else(|| Error::computation("the eigenvalue iteration did not converge"))?;
-    Ok(sorted(values.into_iter().map(|mu| shift + mu.inv()).collect()))
+    Ok(sorted(
+        values.into_iter().map(|mu| shift + mu.inv()).collect(),
+    ))
 }
 
 fn sorted(mut values: Vec<C64>) -> Vec<C64> {
@@ -85,17 +91,24 @@ fn deflate<T: Scalar>(mut operator: Mat<T>, mut mass: Mat<T>) -> Result<Reduced<
     let mut basis: Option<Mat<T>> = None;
     for round in 0..=MOST_DEFLATIONS {
         let size = operator.nrows();
-        let algebraic: Vec<usize> =
-            (0..size).filter(|&i| (0..size).all(|j| mass[(i, j)].complex().norm() == 0.0)).collect();
+        let algebraic: Vec<usize> = (0..size)
+            .filter(|&i| (0..size).all(|j| mass[(i, j)].complex().norm() == 0.0))
+            .collect();
         if algebraic.is_empty() {
             // Rotate rows so that hidden algebraic equations show as zero rows.
             let qr = mass.col_piv_qr();
             let r = qr.thin_R();
             let largest = r[(0, 0)].complex().norm();
-            let rank = (0..size).filter(|&i| r[(i, i)].complex().norm() > RANK * largest).count();
+            let rank = (0..size)
+                .filter(|&i| r[(i, i)].complex().norm() > RANK * largest)
+                .count();
             if rank == size {
                 let basis = basis.unwrap_or_else(|| Mat::identity(n, n));
-                return Ok(Reduced { operator, mass, basis });
+                return Ok(Reduced {
+                    operator,
+                    mass,
+                    basis,
+                });
             }
             if round == MOST_DEFLATIONS {
                 break;
@@ -112,13 +125,17 @@ fn deflate<T: Scalar>(mut operator: Mat<T>, mut mass: Mat<T>) -> Result<Reduced<
         }
         let dynamic: Vec<usize> = (0..size).filter(|i| !algebraic.contains(i)).collect();
         if dynamic.is_empty() {
-            return Err(Error::computation("the problem has no finite eigenvalue at this wavenumber"));
+            return Err(Error::computation(
+                "the problem has no finite eigenvalue at this wavenumber",
+            ));
         }
         // x in the null space of the algebraic rows: the last columns of Q of their adjoint, each
         // row scaled first so that no equation outweighs another.
         let constraints = Mat::from_fn(size, algebraic.len(), |j, a| {
             let row = algebraic[a];
-            let largest = (0..size).map(|c| operator[(row, c)].complex().norm()).fold(1e-300, f64::max);
+            let largest = (0..size)
+                .map(|c| operator[(row, c)].complex().norm())
+                .fold(1e-300, f64::max);
             T::from_complex(operator[(row, j)].complex().conj() / largest)
         });
         let qr = constraints.col_piv_qr();
@@ -141,7 +158,9 @@ fn deflate<T: Scalar>(mut operator: Mat<T>, mut mass: Mat<T>) -> Result<Reduced<
             Some(before) => before * null,
         });
     }
-    Err(Error::computation("the mass matrix stays singular after its hidden constraints are removed"))
+    Err(Error::computation(
+        "the mass matrix stays singular after its hidden constraints are removed",
+    ))
 }
 
 impl<T: Scalar> Reduced<T> {
@@ -158,7 +177,11 @@ impl<T: Scalar> Reduced<T> {
             T::from_complex(self.operator[(i, j)].complex() - shift * self.mass[(i, j)].complex())
         });
         let scale: Vec<f64> = (0..n)
-            .map(|i| 1.0 / (0..n).map(|j| shifted[(i, j)].complex().norm()).fold(1e-300, f64::max))
+            .map(|i| {
+                1.0 / (0..n)
+                    .map(|j| shifted[(i, j)].complex().norm())
+                    .fold(1e-300, f64::max)
+            })
             .collect();
         let row_scaled = |m: MatRef<'_, T>| {
             Mat::from_fn(n, n, |i, j| T::from_complex(m[(i, j)].complex() * scale[i]))
@@ -187,7 +210,9 @@ fn eigenvectors_of<T: Scalar>((operator, mass): (Mat<T>, Mat<T>)) -> Result<Vec<
     let (values, vectors) = T::eigen(inverse.as_ref())
         .ok_or_else(|| Error::computation("the eigenvalue iteration did not converge"))?;
     let n = reduced.basis.nrows();
-    let basis = Mat::from_fn(n, reduced.basis.ncols(), |i, j| reduced.basis[(i, j)].complex());
+    let basis = Mat::from_fn(n, reduced.basis.ncols(), |i, j| {
+        reduced.basis[(i, j)].complex()
+    });
     let full = &basis * &vectors;
     let mut pairs: Vec<(C64, Vec<C64>)> = values
         .into_iter()
@@ -204,7 +229,10 @@ fn eigenvectors_of<T: Scalar>((operator, mass): (Mat<T>, Mat<T>)) -> Result<Vec<
 /// # Errors
 /// A spectrum that cannot be computed, or a mode that inverse iteration does not confirm.
 pub fn leading(problem: &Problem, k: f64) -> Result<EigenPair> {
-    let (c, right) = eigenvectors(problem, k)?.into_iter().next().ok_or_else(no_modes)?;
+    let (c, right) = eigenvectors(problem, k)?
+        .into_iter()
+        .next()
+        .ok_or_else(no_modes)?;
     confirm(problem, k, c, right)
 }
 
@@ -260,8 +288,9 @@ pub fn likeness(a: &[C64], b: &[C64]) -> f64 {
 
 fn confirm(problem: &Problem, k: f64, c: C64, right: Vec<C64>) -> Result<EigenPair> {
     // The left vector comes from the iteration itself; any start that is not orthogonal will do.
-    let start: Vec<C64> =
-        (0..right.len()).map(|i| C64::new(1.0 + 0.37 * ((i * i) as f64).sin(), 0.0)).collect();
+    let start: Vec<C64> = (0..right.len())
+        .map(|i| C64::new(1.0 + 0.37 * ((i * i) as f64).sin(), 0.0))
+        .collect();
     let scale = c.norm().max(1e-3);
     // Off the eigenvalue by a little, so that the shifted matrix can be factorised.
     refine(problem, k, c + C64::new(1e-7 * scale, 0.0), &right, &start).ok_or_else(|| {
@@ -291,8 +320,13 @@ fn iterate<T: Scalar>(
     let factorised = Factorised::new(problem.shifted::<T>(k, shift));
     let kind = |x: &[C64]| -> Vec<T> {
         // A real mode may come with a complex factor: turn its largest entry real.
-        let largest = x.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())).copied();
-        let phase = largest.filter(|l| l.norm() > 0.0).map_or(C64::new(1.0, 0.0), |l| l.conj() / l.norm());
+        let largest = x
+            .iter()
+            .max_by(|a, b| a.norm().total_cmp(&b.norm()))
+            .copied();
+        let phase = largest
+            .filter(|l| l.norm() > 0.0)
+            .map_or(C64::new(1.0, 0.0), |l| l.conj() / l.norm());
         x.iter().map(|v| T::from_complex(v * phase)).collect()
     };
     let (mut x, mut y) = (kind(right), kind(left));
@@ -321,9 +355,16 @@ fn iterate<T: Scalar>(
         c = next;
         // The eigenvalue converges twice as fast as the vectors: one more turn after it settles.
         let floor = 1e-14 * c.norm().max((shift - c).norm()) + 1e-17;
-        if iteration > 0 && (step <= floor || (step < 1e-10 * c.norm().max(1e-6) && step >= 0.5 * change)) {
+        if iteration > 0
+            && (step <= floor || (step < 1e-10 * c.norm().max(1e-6) && step >= 0.5 * change))
+        {
             let complex = |v: Vec<T>| v.into_iter().map(Scalar::complex).collect();
-            return Some(EigenPair { k, c, right: complex(x), left: complex(y) });
+            return Some(EigenPair {
+                k,
+                c,
+                right: complex(x),
+                left: complex(y),
+            });
         }
         change = step;
     }

@@ -63,7 +63,14 @@ impl Simplifier<'_> {
 
 /// A jet without its x-derivatives, and these as a symbol with the coefficient.
 pub fn split(jet: Jet, coefficient: Id) -> (Jet, Symbol) {
-    (Jet { x: 0, absx: 0, ..jet }, Symbol::from([((jet.x, jet.absx), coefficient)]))
+    (
+        Jet {
+            x: 0,
+            absx: 0,
+            ..jet
+        },
+        Symbol::from([((jet.x, jet.absx), coefficient)]),
+    )
 }
 
 /// The entry to eliminate by: no x-derivative in it; the highest y-derivative for choice.
@@ -87,16 +94,22 @@ pub fn reduce(
     conditions: Vec<Combination>,
     simplifier: &mut Simplifier,
 ) -> Result<Reduced, Combination> {
-    let mut open: Vec<Combination> =
-        conditions.into_iter().map(|c| simplifier.combination(graph, c)).collect();
+    let mut open: Vec<Combination> = conditions
+        .into_iter()
+        .map(|c| simplifier.combination(graph, c))
+        .collect();
     let mut reduced = Reduced::default();
     loop {
         open.retain(|c| !c.is_empty());
         // The shortest condition first: it makes the others shorter.
         open.sort_by_key(Combination::len);
-        let Some(position) = open.iter().position(|c| pivot(c).is_some()) else { break };
+        let Some(position) = open.iter().position(|c| pivot(c).is_some()) else {
+            break;
+        };
         let mut row = open.remove(position);
-        let Some((jet, coefficient)) = pivot(&row) else { break };
+        let Some((jet, coefficient)) = pivot(&row) else {
+            break;
+        };
         row.remove(&jet);
         for symbol in row.values_mut() {
             for id in symbol.values_mut() {
@@ -124,10 +137,20 @@ pub fn reduce(
 }
 
 /// `combination` with `jet` replaced by −`row`.
-fn substitute(graph: &mut Graph, combination: &Combination, jet: Jet, row: &Combination) -> Combination {
+fn substitute(
+    graph: &mut Graph,
+    combination: &Combination,
+    jet: Jet,
+    row: &Combination,
+) -> Combination {
     let mut result = combination.clone();
-    let Some(factor) = result.remove(&jet) else { return result };
-    let minus: Symbol = factor.into_iter().map(|(key, id)| (key, graph.neg(id))).collect();
+    let Some(factor) = result.remove(&jet) else {
+        return result;
+    };
+    let minus: Symbol = factor
+        .into_iter()
+        .map(|(key, id)| (key, graph.neg(id)))
+        .collect();
     for (other, symbol) in row {
         symbol_add(graph, result.entry(*other).or_default(), symbol, &minus);
     }
@@ -138,20 +161,38 @@ fn substitute(graph: &mut Graph, combination: &Combination, jet: Jet, row: &Comb
 ///
 /// Terms with ∂t and a y-derivative have no place here (the conditions would depend on the
 /// eigenvalue); `Err` names the first.
-pub fn boundary_form(graph: &mut Graph, terms: &[Term]) -> Result<BTreeMap<Jet, Combination>, Term> {
+pub fn boundary_form(
+    graph: &mut Graph,
+    terms: &[Term],
+) -> Result<BTreeMap<Jet, Combination>, Term> {
     let mut form: BTreeMap<Jet, Combination> = BTreeMap::new();
     for term in terms.iter().filter(|t| t.jet.y > 0) {
         if term.jet.t > 0 {
             return Err(*term);
         }
         for l in 0..term.jet.y {
-            let x_jet = Jet { y: term.jet.y - 1 - l, x: 0, absx: 0, ..term.jet };
+            let x_jet = Jet {
+                y: term.jet.y - 1 - l,
+                x: 0,
+                absx: 0,
+                ..term.jet
+            };
             let mut derivative = term.coefficient;
             let mut binomial = Rational::one();
             // (−1)^l ∂^l (c Y) = (−1)^l Σ_r binomial(l, r) c^(r) ∂^(l−r) Y
             for r in 0..=l {
-                let sign = if l % 2 == 1 { -binomial.clone() } else { binomial.clone() };
-                let y_jet = Jet { field: term.row as u8, t: 0, x: 0, absx: 0, y: l - r };
+                let sign = if l % 2 == 1 {
+                    -binomial.clone()
+                } else {
+                    binomial.clone()
+                };
+                let y_jet = Jet {
+                    field: term.row as u8,
+                    t: 0,
+                    x: 0,
+                    absx: 0,
+                    y: l - r,
+                };
                 let coefficient = graph.scale(derivative, sign);
                 let unit = Symbol::from([((term.jet.x, term.jet.absx), graph.one())]);
                 let symbol = Symbol::from([((0, 0), coefficient)]);
@@ -176,12 +217,18 @@ pub fn demands(
 ) -> BTreeMap<Jet, Combination> {
     let mut demands = form.clone();
     for (jet, rule) in &direct.rules {
-        let Some(factor) = demands.remove(jet) else { continue };
+        let Some(factor) = demands.remove(jet) else {
+            continue;
+        };
         // X-jet = −Σ symbol · others
         for (other, symbol) in rule {
             let minus: Symbol = symbol.iter().map(|(k, &id)| (*k, graph.neg(id))).collect();
             for (y_jet, y_symbol) in &factor {
-                let entry = demands.entry(*other).or_default().entry(*y_jet).or_default();
+                let entry = demands
+                    .entry(*other)
+                    .or_default()
+                    .entry(*y_jet)
+                    .or_default();
                 symbol_add(graph, entry, y_symbol, &minus);
             }
         }

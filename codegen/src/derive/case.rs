@@ -2,7 +2,8 @@
 //! conditions that follow from them, and what closes the problem at k = 0.
 
 use super::boundary::{
-    Combination, Reduced, Simplifier, as_condition, boundary_form, conjugate, demands, reduce, split,
+    Combination, Reduced, Simplifier, as_condition, boundary_form, conjugate, demands, reduce,
+    split,
 };
 use super::closure::{self, CaseClosure};
 use super::form::Form;
@@ -81,7 +82,11 @@ pub(super) fn derive(
     let model = deriver.model;
     let holds = |condition: &&Condition| {
         condition.guard.iter().all(|(switch, choice)| {
-            problem.switches.iter().zip(&choices).any(|(s, c)| s == switch && c == choice)
+            problem
+                .switches
+                .iter()
+                .zip(&choices)
+                .any(|(s, c)| s == switch && c == choice)
         })
     };
     let written: Vec<&Condition> = model.boundary.iter().filter(holds).collect();
@@ -93,11 +98,20 @@ pub(super) fn derive(
         let Some(field) = attributed(&form) else {
             let message = "the condition says nothing about a field to lowest order";
             let expected = "a condition that is linear in some field";
-            mistakes.push(Diagnostic::new(condition.location.clone(), message, expected));
+            mistakes.push(Diagnostic::new(
+                condition.location.clone(),
+                message,
+                expected,
+            ));
             return None;
         };
         let (end, residual) = (condition.end, condition.residual);
-        conditions.push(WallCondition { end, form, residual, field });
+        conditions.push(WallCondition {
+            end,
+            form,
+            residual,
+            field,
+        });
     }
     check_count(deriver, problem.linear, &conditions, &written, mistakes)?;
     let base_conditions = base_conditions(deriver, &problem, &written, &written_base, mistakes)?;
@@ -106,19 +120,32 @@ pub(super) fn derive(
         Ok(walls) => walls,
         Err(reason) => {
             let adjoint = Err(reason);
-            return Some(Case { choices, conditions, base_conditions, adjoint, closures: Vec::new() });
+            return Some(Case {
+                choices,
+                conditions,
+                base_conditions,
+                adjoint,
+                closures: Vec::new(),
+            });
         }
     };
     let adjoint = adjoint_conditions(deriver, &problem, &walls, &rules, conditions.len());
     let closures = closure::derive(deriver, &problem, &walls, &rules, mistakes);
-    Some(Case { choices, conditions, base_conditions, adjoint, closures })
+    Some(Case {
+        choices,
+        conditions,
+        base_conditions,
+        adjoint,
+        closures,
+    })
 }
 
 /// The field of the highest y-derivative in the linear part.
 fn attributed(form: &Form) -> Option<usize> {
     let linear = form.degree(1);
     let jets = linear.terms.keys().map(|m| m[0]);
-    jets.max_by_key(|j| (j.y, std::cmp::Reverse((j.absx, j.x, j.field)))).map(|j| usize::from(j.field))
+    jets.max_by_key(|j| (j.y, std::cmp::Reverse((j.absx, j.x, j.field))))
+        .map(|j| usize::from(j.field))
 }
 
 fn check_count(
@@ -133,12 +160,19 @@ fn check_count(
     let place = match (written.last(), model.balances.first()) {
         (Some(condition), _) => condition.location.clone(),
         (None, Some(balance)) => balance.location.clone(),
-        (None, None) => Location { file: 0, range: 0..0 },
+        (None, None) => Location {
+            file: 0,
+            range: 0..0,
+        },
     };
     let Some(needed) = pairing::total_order(linear, model.balances.len(), profiles) else {
         let message = "the balances do not determine the fields";
         let expected = "balances that can be solved for one field each";
-        mistakes.push(Diagnostic::new(model.balances[0].location.clone(), message, expected));
+        mistakes.push(Diagnostic::new(
+            model.balances[0].location.clone(),
+            message,
+            expected,
+        ));
         return None;
     };
     if conditions.len() == needed {
@@ -150,11 +184,25 @@ fn check_count(
             format!("{} {count}", model.fields[field].name)
         })
         .collect();
-    let trouble = if conditions.len() < needed { "too few" } else { "too many" };
-    let message = format!("{trouble} boundary conditions: {} for derivatives of total order {needed}", conditions.len());
+    let trouble = if conditions.len() < needed {
+        "too few"
+    } else {
+        "too many"
+    };
+    let message = format!(
+        "{trouble} boundary conditions: {} for derivatives of total order {needed}",
+        conditions.len()
+    );
     mistakes.push(
-        Diagnostic::new(place, message, format!("{needed} conditions at the two ends together"))
-            .hint(format!("conditions counted by field: {}", counts.join(", "))),
+        Diagnostic::new(
+            place,
+            message,
+            format!("{needed} conditions at the two ends together"),
+        )
+        .hint(format!(
+            "conditions counted by field: {}",
+            counts.join(", ")
+        )),
     );
     None
 }
@@ -169,18 +217,31 @@ fn base_conditions(
     mistakes: &mut Vec<Diagnostic>,
 ) -> Option<Vec<BaseCondition>> {
     let mut found: Vec<(BaseCondition, Vec<usize>)> = Vec::new();
-    for (condition, own) in written_base.iter().map(|c| (c, true)).chain(written.iter().map(|c| (c, false))) {
+    for (condition, own) in written_base
+        .iter()
+        .map(|c| (c, true))
+        .chain(written.iter().map(|c| (c, false)))
+    {
         let residual = deriver.base_part(condition.residual)?;
         let fields = base_fields(deriver, residual);
-        let solved: Vec<usize> = fields.into_iter().filter(|f| problem.solved.contains(f)).collect();
+        let solved: Vec<usize> = fields
+            .into_iter()
+            .filter(|f| problem.solved.contains(f))
+            .collect();
         if solved.is_empty() {
             continue;
         }
-        let overridden = found
-            .iter()
-            .any(|(other, known)| other.end == condition.end && known.iter().any(|f| solved.contains(f)));
+        let overridden = found.iter().any(|(other, known)| {
+            other.end == condition.end && known.iter().any(|f| solved.contains(f))
+        });
         if own || !overridden {
-            found.push((BaseCondition { end: condition.end, residual }, solved));
+            found.push((
+                BaseCondition {
+                    end: condition.end,
+                    residual,
+                },
+                solved,
+            ));
         }
     }
     let found: Vec<BaseCondition> = found.into_iter().map(|(c, _)| c).collect();
@@ -188,14 +249,27 @@ fn base_conditions(
         + deriver.model.mean.iter().filter(|closure| {
             matches!(closure, crate::model::Closure::Unknown { field, .. } if problem.solved.contains(field))
         }).count();
-    let given = found.len() + if problem.solved.is_empty() { 0 } else { integrals };
+    let given = found.len()
+        + if problem.solved.is_empty() {
+            0
+        } else {
+            integrals
+        };
     if given != problem.base_conditions {
-        let trouble = if given < problem.base_conditions { "few" } else { "many" };
+        let trouble = if given < problem.base_conditions {
+            "few"
+        } else {
+            "many"
+        };
         let message = format!("the base state has too {trouble} conditions: {given}");
-        let expected = format!("{} conditions, at the ends and on integrals together", problem.base_conditions);
+        let expected = format!(
+            "{} conditions, at the ends and on integrals together",
+            problem.base_conditions
+        );
         mistakes.push(
-            Diagnostic::new(deriver.model.base.location.clone(), message, expected)
-                .hint("conditions of `boundary` count where the `base` block says nothing of the field"),
+            Diagnostic::new(deriver.model.base.location.clone(), message, expected).hint(
+                "conditions of `boundary` count where the `base` block says nothing of the field",
+            ),
         );
         return None;
     }
@@ -209,7 +283,9 @@ fn base_fields(deriver: &Deriver, id: Id) -> Vec<usize> {
         match deriver.graph.node(node) {
             Node::Base(field, _) => fields.push(*field),
             Node::BaseLaw(atom) => {
-                fields.extend((0..deriver.uniform.len()).filter(|&f| deriver.dependence[atom.law][f]));
+                fields.extend(
+                    (0..deriver.uniform.len()).filter(|&f| deriver.dependence[atom.law][f]),
+                );
             }
             _ => {}
         }
@@ -233,7 +309,9 @@ fn base_rules(graph: &mut Graph, conditions: &[BaseCondition]) -> BaseRules {
             }
         }
         atoms.sort_unstable();
-        let Some(&(order, field)) = atoms.last() else { continue };
+        let Some(&(order, field)) = atoms.last() else {
+            continue;
+        };
         // A law depends on values of the fields, so it is a coefficient beside a derivative; where
         // it could hide a further dependence the condition is left alone.
         let hides = |n: &Node| matches!(n, Node::BaseLaw(atom) if order == 0 || atom.y > 0);
@@ -249,7 +327,11 @@ fn base_rules(graph: &mut Graph, conditions: &[BaseCondition]) -> BaseRules {
         let atom = graph.base(field, order);
         let product = graph.mul(slope, atom);
         let rest = graph.sub(condition.residual, product);
-        let rest = if graph.vanishes(rest) { graph.zero() } else { rest };
+        let rest = if graph.vanishes(rest) {
+            graph.zero()
+        } else {
+            rest
+        };
         let solution = graph.product([(rest, Rational::one()), (slope, -Rational::one())]);
         let solution = graph.neg(solution);
         rules.push((condition.end, (field, order), solution));
@@ -258,13 +340,7 @@ fn base_rules(graph: &mut Graph, conditions: &[BaseCondition]) -> BaseRules {
 }
 
 /// An expression at one end: the coordinate's value put in, base conditions used.
-pub(super) fn at_end(
-    graph: &mut Graph,
-    place: Id,
-    end: End,
-    rules: &BaseRules,
-    id: Id,
-) -> Id {
+pub(super) fn at_end(graph: &mut Graph, place: Id, end: End, rules: &BaseRules, id: Id) -> Id {
     graph.substitute(id, &mut |_, node| match node {
         Node::Coordinate => Some(place),
         Node::Base(field, order) => rules
@@ -309,7 +385,9 @@ fn walls(
         });
         let rows: Vec<_> = rows.collect();
         let mut simplify = |graph: &mut Graph, id| at_end(graph, place, end, rules, id);
-        let mut simplifier = Simplifier { at_end: &mut simplify };
+        let mut simplifier = Simplifier {
+            at_end: &mut simplify,
+        };
         let solved = reduce(deriver.graph, rows, &mut simplifier).map_err(|_| {
             "the boundary conditions cannot be solved for derivatives without x in them".to_owned()
         })?;
@@ -331,7 +409,9 @@ fn adjoint_conditions(
     for (end, direct) in &walls.reduced {
         let place = deriver.place(*end);
         let mut simplify = |graph: &mut Graph, id| at_end(graph, place, *end, rules, id);
-        let mut simplifier = Simplifier { at_end: &mut simplify };
+        let mut simplifier = Simplifier {
+            at_end: &mut simplify,
+        };
         let demanded = demands(deriver.graph, &walls.form, direct, &mut simplifier);
         let mut rows = Vec::new();
         for (jet, combination) in &demanded {
@@ -342,7 +422,11 @@ fn adjoint_conditions(
             .map_err(|_| "a condition on the adjoint field holds x-derivatives alone".to_owned())?;
         for (jet, rule) in reduced.rules {
             let combination = as_condition(deriver.graph, jet, &rule);
-            found.push(AdjointCondition { end: *end, combination, balance: usize::from(jet.field) });
+            found.push(AdjointCondition {
+                end: *end,
+                combination,
+                balance: usize::from(jet.field),
+            });
         }
     }
     if found.len() == needed {
@@ -367,7 +451,12 @@ fn describe_demand(
     combination: &Combination,
 ) -> String {
     let fields = deriver.model.field_names();
-    let parameters: Vec<String> = deriver.model.parameters.iter().map(|p| p.name.clone()).collect();
+    let parameters: Vec<String> = deriver
+        .model
+        .parameters
+        .iter()
+        .map(|p| p.name.clone())
+        .collect();
     let printer = Printer {
         graph: deriver.graph,
         fields: &fields,

@@ -3,11 +3,11 @@
 //! An integral is conserved if some ℓ(y) with M0†ℓ = (its density) obeys L†ℓ = 0 at k = 0 and makes
 //! the boundary form vanish: then d/dt ∫ density = 0. The tool finds ℓ, it does not believe.
 
+use super::Deriver;
 use super::boundary::{Simplifier, at_zero_wavenumber, demands};
 use super::case::{BaseRules, Case, CaseProblem, Walls, at_end};
 use super::form::Form;
 use super::linear::Term;
-use super::Deriver;
 use crate::diagnostic::Diagnostic;
 use crate::graph::{Graph, Id, Jet, Rational, Variable};
 use crate::model::Closure;
@@ -17,11 +17,20 @@ use num_traits::One;
 #[derive(Clone, Debug)]
 pub enum CaseClosure {
     /// ∫ density = 0; the multiplier enters the balances with the weights of `column`.
-    Conserved { density: Vec<(Jet, Id)>, column: Vec<(usize, Id)> },
+    Conserved {
+        density: Vec<(Jet, Id)>,
+        column: Vec<(usize, Id)>,
+    },
     /// The constant of a field is arbitrary: ∫ field = 0.
-    Gauge { field: usize, column: Vec<(usize, Id)> },
+    Gauge {
+        field: usize,
+        column: Vec<(usize, Id)>,
+    },
     /// The number `field` is unknown: ∫ density = 0.
-    Unknown { field: usize, density: Vec<(Jet, Id)> },
+    Unknown {
+        field: usize,
+        density: Vec<(Jet, Id)>,
+    },
 }
 
 /// The closures of one case.
@@ -35,15 +44,26 @@ pub(super) fn derive(
     let model = deriver.model;
     let mut closures = Vec::new();
     // An integral that fixes the base is a candidate for a conserved one.
-    let candidates = model.base.integrals.iter().map(|i| (i.integrand, &i.location));
+    let candidates = model
+        .base
+        .integrals
+        .iter()
+        .map(|i| (i.integrand, &i.location));
     let declared = model.mean.iter().filter_map(|closure| match closure {
-        Closure::Conserved { integrand, location } => Some((*integrand, location)),
+        Closure::Conserved {
+            integrand,
+            location,
+        } => Some((*integrand, location)),
         _ => None,
     });
     for (integrand, location) in candidates.chain(declared) {
-        let Some(form) = deriver.expand(integrand, location, mistakes) else { continue };
+        let Some(form) = deriver.expand(integrand, location, mistakes) else {
+            continue;
+        };
         let density = density(&form);
-        let Some(column) = multiplier(deriver, problem.linear, &density) else { continue };
+        let Some(column) = multiplier(deriver, problem.linear, &density) else {
+            continue;
+        };
         if conserved(deriver, problem, walls, rules, &column, &closures) {
             closures.push(CaseClosure::Conserved { density, column });
         }
@@ -53,11 +73,17 @@ pub(super) fn derive(
             Closure::Conserved { .. } => {}
             Closure::Gauge { field, location } => {
                 let fixed = problem.linear.iter().find(|t| {
-                    usize::from(t.jet.field) == *field && t.jet.x == 0 && t.jet.absx == 0 && t.jet.y == 0
+                    usize::from(t.jet.field) == *field
+                        && t.jet.x == 0
+                        && t.jet.absx == 0
+                        && t.jet.y == 0
                 });
                 if let Some(term) = fixed {
                     let name = &model.fields[*field].name;
-                    let message = format!("`{name}` is no gauge: its value enters `{}`", model.balances[term.row].name);
+                    let message = format!(
+                        "`{name}` is no gauge: its value enters `{}`",
+                        model.balances[term.row].name
+                    );
                     let expected = "a field of which only derivatives enter the balances";
                     mistakes.push(Diagnostic::new(location.clone(), message, expected));
                     continue;
@@ -65,18 +91,28 @@ pub(super) fn derive(
                 let row = problem.pairing.iter().position(|f| f == field).unwrap_or(0);
                 let column = vec![(row, problem.divisors[row])];
                 if conserved(deriver, problem, walls, rules, &column, &[]) {
-                    closures.push(CaseClosure::Gauge { field: *field, column });
+                    closures.push(CaseClosure::Gauge {
+                        field: *field,
+                        column,
+                    });
                 } else {
                     let name = &model.fields[*field].name;
-                    let message = format!("the constant of `{name}` is not free: `{}` does not integrate to zero", model.balances[row].name);
-                    let expected = "a gauge whose balance is a divergence, without flux through the ends";
+                    let message = format!(
+                        "the constant of `{name}` is not free: `{}` does not integrate to zero",
+                        model.balances[row].name
+                    );
+                    let expected =
+                        "a gauge whose balance is a divergence, without flux through the ends";
                     mistakes.push(Diagnostic::new(location.clone(), message, expected));
                 }
             }
             Closure::Unknown { field, integral } => {
                 let expanded = deriver.expand(integral.integrand, &integral.location, mistakes);
                 if let Some(form) = expanded {
-                    closures.push(CaseClosure::Unknown { field: *field, density: density(&form) });
+                    closures.push(CaseClosure::Unknown {
+                        field: *field,
+                        density: density(&form),
+                    });
                 }
             }
         }
@@ -96,13 +132,20 @@ pub(super) fn check(deriver: &Deriver, cases: &[Case], mistakes: &mut Vec<Diagno
         })
         .collect();
     let conserved = |case: &Case| {
-        case.closures.iter().filter(|c| matches!(c, CaseClosure::Conserved { .. })).count()
+        case.closures
+            .iter()
+            .filter(|c| matches!(c, CaseClosure::Conserved { .. }))
+            .count()
     };
     let most = cases.iter().map(conserved).max().unwrap_or(0);
     if let (Some(location), true) = (declared.last(), most < declared.len()) {
         mistakes.push(
-            Diagnostic::new((*location).clone(), "this integral is not conserved", "an integral that the balances and the walls keep constant")
-                .hint("its density must change by a flux that vanishes at both ends"),
+            Diagnostic::new(
+                (*location).clone(),
+                "this integral is not conserved",
+                "an integral that the balances and the walls keep constant",
+            )
+            .hint("its density must change by a flux that vanishes at both ends"),
         );
     }
 }
@@ -110,11 +153,20 @@ pub(super) fn check(deriver: &Deriver, cases: &[Case], mistakes: &mut Vec<Diagno
 /// The linear part at k = 0.
 fn density(form: &Form) -> Vec<(Jet, Id)> {
     let linear = form.degree(1);
-    linear.terms.iter().map(|(m, &c)| (m[0], c)).filter(|(j, _)| j.is_base()).collect()
+    linear
+        .terms
+        .iter()
+        .map(|(m, &c)| (m[0], c))
+        .filter(|(j, _)| j.is_base())
+        .collect()
 }
 
 /// ℓ with M0†ℓ = density, by Gaussian elimination on the mass matrix.
-fn multiplier(deriver: &mut Deriver, linear: &[Term], density: &[(Jet, Id)]) -> Option<Vec<(usize, Id)>> {
+fn multiplier(
+    deriver: &mut Deriver,
+    linear: &[Term],
+    density: &[(Jet, Id)],
+) -> Option<Vec<(usize, Id)>> {
     let graph = &mut *deriver.graph;
     if density.is_empty() || density.iter().any(|(j, _)| j.y > 0) {
         return None;
@@ -122,8 +174,11 @@ fn multiplier(deriver: &mut Deriver, linear: &[Term], density: &[(Jet, Id)]) -> 
     let rows = linear.iter().map(|t| t.row + 1).max().unwrap_or(0);
     let zero = graph.zero();
     let fields: Vec<usize> = {
-        let mut fields: Vec<usize> =
-            linear.iter().filter(|t| t.jet.t == 1).map(|t| usize::from(t.jet.field)).collect();
+        let mut fields: Vec<usize> = linear
+            .iter()
+            .filter(|t| t.jet.t == 1)
+            .map(|t| usize::from(t.jet.field))
+            .collect();
         fields.extend(density.iter().map(|(j, _)| usize::from(j.field)));
         fields.sort_unstable();
         fields.dedup();
@@ -133,12 +188,18 @@ fn multiplier(deriver: &mut Deriver, linear: &[Term], density: &[(Jet, Id)]) -> 
     let mut system: Vec<Vec<Id>> = Vec::new();
     for &field in &fields {
         let mut equation = vec![zero; rows + 1];
-        for term in linear.iter().filter(|t| usize::from(t.jet.field) == field && t.jet.t == 1) {
+        for term in linear
+            .iter()
+            .filter(|t| usize::from(t.jet.field) == field && t.jet.t == 1)
+        {
             if term.jet.x == 0 && term.jet.absx == 0 && term.jet.y == 0 {
                 equation[term.row] = term.coefficient;
             }
         }
-        for (jet, weight) in density.iter().filter(|(j, _)| usize::from(j.field) == field) {
+        for (jet, weight) in density
+            .iter()
+            .filter(|(j, _)| usize::from(j.field) == field)
+        {
             debug_assert!(jet.y == 0);
             equation[rows] = *weight;
         }
@@ -147,7 +208,9 @@ fn multiplier(deriver: &mut Deriver, linear: &[Term], density: &[(Jet, Id)]) -> 
     let mut pivots = Vec::new();
     let mut rank = 0;
     for column in 0..rows {
-        let Some(found) = (rank..system.len()).find(|&r| !graph.vanishes(system[r][column])) else { continue };
+        let Some(found) = (rank..system.len()).find(|&r| !graph.vanishes(system[r][column])) else {
+            continue;
+        };
         system.swap(rank, found);
         let pivot = system[rank][column];
         for entry in 0..=rows {
@@ -168,11 +231,20 @@ fn multiplier(deriver: &mut Deriver, linear: &[Term], density: &[(Jet, Id)]) -> 
         pivots.push((rank, column));
         rank += 1;
     }
-    if system[rank..].iter().any(|equation| !graph.vanishes(equation[rows])) {
+    if system[rank..]
+        .iter()
+        .any(|equation| !graph.vanishes(equation[rows]))
+    {
         return None;
     }
-    let solution = pivots.into_iter().map(|(r, column)| (column, system[r][rows]));
-    Some(solution.filter(|(_, weight)| !graph.vanishes(*weight)).collect())
+    let solution = pivots
+        .into_iter()
+        .map(|(r, column)| (column, system[r][rows]));
+    Some(
+        solution
+            .filter(|(_, weight)| !graph.vanishes(*weight))
+            .collect(),
+    )
 }
 
 /// Whether L†ℓ = 0 and the boundary form vanishes, at k = 0; or L†ℓ is a multiple of the density of
@@ -189,8 +261,15 @@ fn conserved(
     let mut image = Vec::with_capacity(profiles);
     for field in 0..profiles {
         let mut total = deriver.graph.zero();
-        for term in problem.adjoint.iter().filter(|t| t.row == field && t.jet.is_base()) {
-            let Some((_, weight)) = column.iter().find(|(row, _)| *row == usize::from(term.jet.field)) else {
+        for term in problem
+            .adjoint
+            .iter()
+            .filter(|t| t.row == field && t.jet.is_base())
+        {
+            let Some((_, weight)) = column
+                .iter()
+                .find(|(row, _)| *row == usize::from(term.jet.field))
+            else {
                 continue;
             };
             let derivative = along_base(deriver.graph, *weight, term.jet.y);
@@ -200,17 +279,31 @@ fn conserved(
         image.push(total);
     }
     let null = image.iter().all(|&id| deriver.graph.vanishes(id));
-    if !null && !known.iter().any(|closure| is_multiple(deriver.graph, &image, closure)) {
+    if !null
+        && !known
+            .iter()
+            .any(|closure| is_multiple(deriver.graph, &image, closure))
+    {
         return false;
     }
     for (end, direct) in &walls.reduced {
         let place = deriver.place(*end);
         let mut simplify = |graph: &mut Graph, id| at_end(graph, place, *end, rules, id);
-        let demanded = demands(deriver.graph, &walls.form, direct, &mut Simplifier { at_end: &mut simplify });
+        let demanded = demands(
+            deriver.graph,
+            &walls.form,
+            direct,
+            &mut Simplifier {
+                at_end: &mut simplify,
+            },
+        );
         for combination in demanded.values() {
             let mut parts = Vec::new();
             for (jet, id) in at_zero_wavenumber(combination) {
-                let Some((_, weight)) = column.iter().find(|(row, _)| *row == usize::from(jet.field)) else {
+                let Some((_, weight)) = column
+                    .iter()
+                    .find(|(row, _)| *row == usize::from(jet.field))
+                else {
                     continue;
                 };
                 let derivative = along_base(deriver.graph, *weight, jet.y);
@@ -228,15 +321,21 @@ fn conserved(
 
 /// Whether Σ image_f q_f is a constant times the density of a conserved integral.
 fn is_multiple(graph: &mut Graph, image: &[Id], closure: &CaseClosure) -> bool {
-    let CaseClosure::Conserved { density, .. } = closure else { return false };
-    let Some((first, weight)) = density.first() else { return false };
+    let CaseClosure::Conserved { density, .. } = closure else {
+        return false;
+    };
+    let Some((first, weight)) = density.first() else {
+        return false;
+    };
     let factor = graph.divide_terms(image[usize::from(first.field)], *weight);
     let slope = graph.differentiate(factor, Variable::AlongBase);
     if !graph.vanishes(slope) {
         return false;
     }
     (0..image.len()).all(|field| {
-        let own = density.iter().find(|(jet, _)| usize::from(jet.field) == field);
+        let own = density
+            .iter()
+            .find(|(jet, _)| usize::from(jet.field) == field);
         let expected = match own {
             Some((_, weight)) => graph.mul(factor, *weight),
             None => graph.zero(),

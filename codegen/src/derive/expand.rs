@@ -34,7 +34,13 @@ impl<'a> Expander<'a> {
         uniform: &'a [bool],
         dependence: &'a [Vec<bool>],
     ) -> Self {
-        Expander { order, closed, uniform, dependence, memo: HashMap::new() }
+        Expander {
+            order,
+            closed,
+            uniform,
+            dependence,
+            memo: HashMap::new(),
+        }
     }
 
     /// The expansion of an expression of the full state.
@@ -106,7 +112,9 @@ impl<'a> Expander<'a> {
 
     fn without_uniform(&self, mut form: Form) -> Form {
         form.terms.retain(|monomial, _| {
-            monomial.iter().all(|j| !self.uniform[usize::from(j.field)] || *j == Jet::value(j.field.into()))
+            monomial
+                .iter()
+                .all(|j| !self.uniform[usize::from(j.field)] || *j == Jet::value(j.field.into()))
         });
         form
     }
@@ -162,8 +170,9 @@ impl<'a> Expander<'a> {
     /// Σ_α law⁰_α/α! Π δ_f^α_f over the fields the law depends on.
     fn law_series(&mut self, graph: &mut Graph, atom: &LawAtom) -> Form {
         let mut form = Form::default();
-        let fields: Vec<usize> =
-            (0..self.uniform.len()).filter(|&f| self.dependence[atom.law][f]).collect();
+        let fields: Vec<usize> = (0..self.uniform.len())
+            .filter(|&f| self.dependence[atom.law][f])
+            .collect();
         let mut open = vec![(atom.clone(), Vec::<Jet>::new(), Rational::one(), 0)];
         while let Some((atom, monomial, factor, first)) = open.pop() {
             if monomial.len() < self.order {
@@ -204,7 +213,10 @@ fn select(graph: &mut Graph, switch: usize, forms: &[Form]) -> Form {
     let monomials: std::collections::BTreeSet<_> =
         forms.iter().flat_map(|f| f.terms.keys().cloned()).collect();
     for monomial in monomials {
-        let branches = forms.iter().map(|f| f.terms.get(&monomial).copied().unwrap_or(zero)).collect();
+        let branches = forms
+            .iter()
+            .map(|f| f.terms.get(&monomial).copied().unwrap_or(zero))
+            .collect();
         let coefficient = graph.select(switch, branches);
         chosen.accumulate(graph, monomial, coefficient);
     }

@@ -29,13 +29,18 @@ impl Form {
 
     /// The part of degree 0.
     pub fn base(&self, graph: &mut Graph) -> Id {
-        self.terms.get(&Vec::new()).copied().unwrap_or_else(|| graph.zero())
+        self.terms
+            .get(&Vec::new())
+            .copied()
+            .unwrap_or_else(|| graph.zero())
     }
 
     /// The terms of one degree.
     pub fn degree(&self, degree: usize) -> Form {
         let of_degree = self.terms.iter().filter(|(m, _)| m.len() == degree);
-        Form { terms: of_degree.map(|(m, c)| (m.clone(), *c)).collect() }
+        Form {
+            terms: of_degree.map(|(m, c)| (m.clone(), *c)).collect(),
+        }
     }
 
     /// The highest degree met.

@@ -22,8 +22,16 @@ pub fn linear_operator(graph: &mut Graph, forms: &[Form]) -> Vec<Term> {
     for (row, form) in forms.iter().enumerate() {
         for (monomial, &coefficient) in &form.degree(1).terms {
             let jet = monomial[0];
-            let coefficient = if jet.t == 0 { graph.neg(coefficient) } else { coefficient };
-            terms.push(Term { row, jet, coefficient });
+            let coefficient = if jet.t == 0 {
+                graph.neg(coefficient)
+            } else {
+                coefficient
+            };
+            terms.push(Term {
+                row,
+                jet,
+                coefficient,
+            });
         }
     }
     terms
@@ -40,8 +48,16 @@ pub fn adjoint_operator(graph: &mut Graph, terms: &[Term]) -> Vec<Term> {
         let mut binomial = Rational::one();
         // ∂^d (c Y) = Σ_l binomial(d, l) c^(l) ∂^(d−l) Y
         for l in 0..=order {
-            let jet = Jet { field: term.row as u8, y: order - l, ..term.jet };
-            let sign = if odd { -binomial.clone() } else { binomial.clone() };
+            let jet = Jet {
+                field: term.row as u8,
+                y: order - l,
+                ..term.jet
+            };
+            let sign = if odd {
+                -binomial.clone()
+            } else {
+                binomial.clone()
+            };
             let coefficient = graph.scale(derivative, sign);
             let key = (usize::from(term.jet.field), jet);
             let total = match sums.get(&key) {
@@ -58,7 +74,11 @@ pub fn adjoint_operator(graph: &mut Graph, terms: &[Term]) -> Vec<Term> {
     for ((row, jet), coefficient) in sums {
         let coefficient = graph.collect(coefficient);
         if !graph.vanishes(coefficient) {
-            adjoint.push(Term { row, jet, coefficient });
+            adjoint.push(Term {
+                row,
+                jet,
+                coefficient,
+            });
         }
     }
     adjoint

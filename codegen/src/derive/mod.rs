@@ -91,7 +91,10 @@ pub fn derive(mut model: Model, order: usize) -> Result<Derivation, Diagnostics>
     model.graph = graph;
     match operators {
         Some(operators) if mistakes.is_empty() => Ok(Derivation { model, operators }),
-        _ => Err(Diagnostics { files: model.sources, list: mistakes }),
+        _ => Err(Diagnostics {
+            files: model.sources,
+            list: mistakes,
+        }),
     }
 }
 
@@ -108,7 +111,13 @@ impl<'a> Deriver<'a> {
     fn new(model: &'a Model, graph: &'a mut Graph, order: usize) -> Self {
         let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
         let dependence = open::dependence(graph, &model.laws, uniform.len());
-        Deriver { model, graph, order, uniform, dependence }
+        Deriver {
+            model,
+            graph,
+            order,
+            uniform,
+            dependence,
+        }
     }
 
     fn run(mut self, mistakes: &mut Vec<Diagnostic>) -> Option<Operators> {
@@ -140,12 +149,18 @@ impl<'a> Deriver<'a> {
         let mut adjoint = linear::adjoint_operator(self.graph, &linear);
         // An unknown number has no adjoint equation of its own: its condition is an integral.
         adjoint.retain(|term| !self.uniform[term.row]);
-        let nonlinear = (2..=self.order).map(|d| self.nonlinear(&divided, d)).collect();
+        let nonlinear = (2..=self.order)
+            .map(|d| self.nonlinear(&divided, d))
+            .collect();
         let given: Vec<_> = model.balances.iter().map(|b| b.paired_field).collect();
         let Some(pairing) = pairing::pair(&linear, balances.len(), profiles, &given) else {
             let place = model.balances[0].location.clone();
             let message = "the balances cannot be paired with the fields";
-            mistakes.push(Diagnostic::new(place, message, "one balance for each field"));
+            mistakes.push(Diagnostic::new(
+                place,
+                message,
+                "one balance for each field",
+            ));
             return None;
         };
         self.check_determined(&linear, profiles, mistakes);
@@ -167,12 +182,20 @@ impl<'a> Deriver<'a> {
             cases.extend(case::derive(&mut self, problem, choices, mistakes));
         }
         closure::check(&self, &cases, mistakes);
-        let walls: Vec<&Form> =
-            cases.iter().flat_map(|c| c.conditions.iter().map(|w| &w.form)).collect();
+        let walls: Vec<&Form> = cases
+            .iter()
+            .flat_map(|c| c.conditions.iter().map(|w| &w.form))
+            .collect();
         let parity = parity::parity(&balances, &walls, self.uniform.len());
-        let place = Location { file: 0, range: 0..0 };
-        let outputs: Vec<Form> =
-            model.outputs.iter().filter_map(|o| self.expand(o.body, &place, mistakes)).collect();
+        let place = Location {
+            file: 0,
+            range: 0..0,
+        };
+        let outputs: Vec<Form> = model
+            .outputs
+            .iter()
+            .filter_map(|o| self.expand(o.body, &place, mistakes))
+            .collect();
         Some(Operators {
             order: self.order,
             balances,
@@ -198,8 +221,12 @@ impl<'a> Deriver<'a> {
         place: &Location,
         mistakes: &mut Vec<Diagnostic>,
     ) -> Option<Form> {
-        let mut expander =
-            Expander::new(self.order, &self.model.base.closed, &self.uniform, &self.dependence);
+        let mut expander = Expander::new(
+            self.order,
+            &self.model.base.closed,
+            &self.uniform,
+            &self.dependence,
+        );
         match expander.expand(self.graph, id) {
             Ok(form) => Some(form),
             Err(Inexpandable(reason)) => {
@@ -247,10 +274,20 @@ impl<'a> Deriver<'a> {
         }
         let place = match self.model.balances.last() {
             Some(balance) if balances > fields => balance.location.clone(),
-            _ => self.model.fields.last().map_or(Location { file: 0, range: 0..0 }, |f| f.location.clone()),
+            _ => self.model.fields.last().map_or(
+                Location {
+                    file: 0,
+                    range: 0..0,
+                },
+                |f| f.location.clone(),
+            ),
         };
         let message = format!("{balances} balance(s) for {fields} field(s)");
-        let what = if balances > fields { "a surplus balance" } else { "a field without a balance" };
+        let what = if balances > fields {
+            "a surplus balance"
+        } else {
+            "a field without a balance"
+        };
         mistakes.push(
             Diagnostic::new(place, message, "as many balances as fields")
                 .hint(format!("there is {what}")),
@@ -264,21 +301,31 @@ impl<'a> Deriver<'a> {
             let place = balance.location.clone();
             if let Some(jet) = jets().find(|j| j.t > 1) {
                 let name = &self.model.fields[usize::from(jet.field)].name;
-                let message = format!("`{}` holds a second time derivative of `{name}`", balance.name);
+                let message = format!(
+                    "`{}` holds a second time derivative of `{name}`",
+                    balance.name
+                );
                 mistakes.push(
                     Diagnostic::new(place, message, "balances of first order in time")
                         .hint("introduce a field for the first time derivative"),
                 );
             } else if let Some(jet) = jets().find(|j| j.y > 2) {
                 let name = &self.model.fields[usize::from(jet.field)].name;
-                let message = format!("`{}` holds a {}-fold y-derivative of `{name}`", balance.name, jet.y);
+                let message = format!(
+                    "`{}` holds a {}-fold y-derivative of `{name}`",
+                    balance.name, jet.y
+                );
                 mistakes.push(
                     Diagnostic::new(place, message, "y-derivatives of second order at most")
                         .hint("introduce an auxiliary field for the second derivative"),
                 );
             } else if self.model.interval.is_none() && jets().any(|j| j.y > 0) {
                 let message = format!("`{}` holds a cross-stream derivative", balance.name);
-                mistakes.push(Diagnostic::new(place, message, "no such derivative, for want of the coordinate"));
+                mistakes.push(Diagnostic::new(
+                    place,
+                    message,
+                    "no such derivative, for want of the coordinate",
+                ));
             }
         }
     }
@@ -313,7 +360,11 @@ impl<'a> Deriver<'a> {
         let mut opener = Opener::new(&model.laws, closed, &self.uniform);
         let mut solved: Vec<usize> = (0..closed.len()).filter(|&f| closed[f].is_none()).collect();
         solved.sort_by_key(|&f| self.uniform[f]);
-        let profiles: Vec<usize> = solved.iter().copied().filter(|&f| !self.uniform[f]).collect();
+        let profiles: Vec<usize> = solved
+            .iter()
+            .copied()
+            .filter(|&f| !self.uniform[f])
+            .collect();
         let mut rows = Vec::new();
         let mut orders = Vec::new();
         for (balance, form) in balances.iter().enumerate() {
@@ -341,26 +392,61 @@ impl<'a> Deriver<'a> {
             // A closed base that does not satisfy a balance shows when it is evaluated, where a
             // symbolic test could not see through a root.
             let integrals = self.base_integrals(&mut Vec::new());
-            let rows = rows.into_iter().map(|(balance, residual, _)| BaseRow { balance, residual, field: None, order: 0 });
-            return Some((BaseRows { rows: rows.collect(), conditions: 0 }, solved, integrals));
+            let rows = rows.into_iter().map(|(balance, residual, _)| BaseRow {
+                balance,
+                residual,
+                field: None,
+                order: 0,
+            });
+            return Some((
+                BaseRows {
+                    rows: rows.collect(),
+                    conditions: 0,
+                },
+                solved,
+                integrals,
+            ));
         }
         let place = model.base.location.clone();
         if rows.len() != profiles.len() {
-            let names: Vec<_> = profiles.iter().map(|&f| format!("`{}`", model.fields[f].name)).collect();
+            let names: Vec<_> = profiles
+                .iter()
+                .map(|&f| format!("`{}`", model.fields[f].name))
+                .collect();
             let message = format!(
                 "the base state has {} unknown field(s) ({}) for {} balance(s)",
-                profiles.len(), names.join(", "), rows.len()
+                profiles.len(),
+                names.join(", "),
+                rows.len()
             );
-            let held: Vec<_> = rows.iter().map(|(b, ..)| format!("`{}`", model.balances[*b].name)).collect();
+            let held: Vec<_> = rows
+                .iter()
+                .map(|(b, ..)| format!("`{}`", model.balances[*b].name))
+                .collect();
             mistakes.push(
-                Diagnostic::new(place, message, "as many as there are balances that do not vanish identically")
-                    .hint(format!("balances left in the base state: {}", if held.is_empty() { "none".into() } else { held.join(", ") })),
+                Diagnostic::new(
+                    place,
+                    message,
+                    "as many as there are balances that do not vanish identically",
+                )
+                .hint(format!(
+                    "balances left in the base state: {}",
+                    if held.is_empty() {
+                        "none".into()
+                    } else {
+                        held.join(", ")
+                    }
+                )),
             );
             return None;
         }
         let Some((total, pairing)) = pairing::assign(&orders) else {
             let message = "the base balances cannot be paired with the base fields";
-            mistakes.push(Diagnostic::new(place, message, "one balance for each field that is solved for"));
+            mistakes.push(Diagnostic::new(
+                place,
+                message,
+                "one balance for each field that is solved for",
+            ));
             return None;
         };
         let uniform_solved = solved.len() - profiles.len();
@@ -376,7 +462,14 @@ impl<'a> Deriver<'a> {
             })
             .collect();
         let integrals = self.base_integrals(mistakes);
-        Some((BaseRows { rows: base_rows, conditions }, solved, integrals))
+        Some((
+            BaseRows {
+                rows: base_rows,
+                conditions,
+            },
+            solved,
+            integrals,
+        ))
     }
 
     fn base_integrals(&mut self, mistakes: &mut Vec<Diagnostic>) -> Vec<(Id, Id)> {
@@ -384,7 +477,9 @@ impl<'a> Deriver<'a> {
         let mut integrals = Vec::new();
         let declared = model.base.integrals.iter();
         let unknowns = model.mean.iter().filter_map(|closure| match closure {
-            crate::model::Closure::Unknown { field, integral } if model.base.closed[*field].is_none() => {
+            crate::model::Closure::Unknown { field, integral }
+                if model.base.closed[*field].is_none() =>
+            {
                 Some(integral)
             }
             _ => None,
@@ -404,15 +499,24 @@ impl<'a> Deriver<'a> {
 
     /// Switches that guard boundary conditions.
     fn switches(&self) -> Vec<usize> {
-        let conditions = self.model.boundary.iter().chain(&self.model.base.conditions);
-        let mut switches: Vec<usize> =
-            conditions.flat_map(|c| c.guard.iter().map(|(switch, _)| *switch)).collect();
+        let conditions = self
+            .model
+            .boundary
+            .iter()
+            .chain(&self.model.base.conditions);
+        let mut switches: Vec<usize> = conditions
+            .flat_map(|c| c.guard.iter().map(|(switch, _)| *switch))
+            .collect();
         switches.sort_unstable();
         switches.dedup();
         switches
     }
 
-    fn choices(&self, switches: &[usize], mistakes: &mut Vec<Diagnostic>) -> Option<Vec<Vec<usize>>> {
+    fn choices(
+        &self,
+        switches: &[usize],
+        mistakes: &mut Vec<Diagnostic>,
+    ) -> Option<Vec<Vec<usize>>> {
         let mut all = vec![Vec::new()];
         for &switch in switches {
             let count = self.model.parameters[switch].choices.len();
@@ -425,7 +529,11 @@ impl<'a> Deriver<'a> {
             if all.len() > MOST_CASES {
                 let place = self.model.parameters[switch].location.clone();
                 let message = "the switches make too many combinations of boundary conditions";
-                mistakes.push(Diagnostic::new(place, message, format!("at most {MOST_CASES}")));
+                mistakes.push(Diagnostic::new(
+                    place,
+                    message,
+                    format!("at most {MOST_CASES}"),
+                ));
                 return None;
             }
         }

@@ -16,7 +16,12 @@ pub struct Opener<'a> {
 
 impl<'a> Opener<'a> {
     pub fn new(laws: &'a [Law], closed: &'a [Option<Id>], uniform: &'a [bool]) -> Self {
-        Opener { laws, closed, uniform, partials: HashMap::new() }
+        Opener {
+            laws,
+            closed,
+            uniform,
+            partials: HashMap::new(),
+        }
     }
 
     /// A base-state expression in base fields, parameters and the coordinate alone.
@@ -35,7 +40,13 @@ impl<'a> Opener<'a> {
     }
 
     fn base_atom(&mut self, graph: &mut Graph, atom: &LawAtom) -> Id {
-        let partial = self.partial(graph, &LawAtom { y: 0, ..atom.clone() });
+        let partial = self.partial(
+            graph,
+            &LawAtom {
+                y: 0,
+                ..atom.clone()
+            },
+        );
         let closed = self.closed;
         let mut value = graph.substitute(partial, &mut |graph, node| match node {
             Node::Jet(jet) => Some(base_value(graph, closed, usize::from(jet.field), jet.y)),
@@ -76,7 +87,13 @@ impl<'a> Opener<'a> {
             let lower = self.partial(graph, &lower);
             graph.differentiate(lower, Variable::Field(field))
         } else if atom.y > 0 {
-            let lower = self.partial(graph, &LawAtom { y: atom.y - 1, ..atom.clone() });
+            let lower = self.partial(
+                graph,
+                &LawAtom {
+                    y: atom.y - 1,
+                    ..atom.clone()
+                },
+            );
             graph.differentiate(lower, Variable::Coordinate)
         } else {
             let body = self.laws[atom.law].body;
@@ -104,7 +121,9 @@ pub fn carry_out(graph: &mut Graph, id: Id, uniform: &[bool]) -> Id {
     }
     let carried = replace_derivatives(graph, id, &done);
     graph.substitute(carried, &mut |graph, node| match node {
-        Node::Jet(jet) if uniform[usize::from(jet.field)] && *jet != Jet::value(jet.field.into()) => {
+        Node::Jet(jet)
+            if uniform[usize::from(jet.field)] && *jet != Jet::value(jet.field.into()) =>
+        {
             Some(graph.zero())
         }
         _ => None,

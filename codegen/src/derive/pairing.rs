@@ -18,7 +18,9 @@ pub fn assign(weights: &[Vec<Option<i64>>]) -> Option<(i64, Vec<usize>)> {
     for row in weights.iter().take(n) {
         let mut next: Vec<Option<(i64, Vec<usize>)>> = vec![None; 1 << columns];
         for (used, state) in best.iter().enumerate() {
-            let Some((total, chosen)) = state else { continue };
+            let Some((total, chosen)) = state else {
+                continue;
+            };
             for (column, weight) in row.iter().enumerate() {
                 let Some(weight) = weight else { continue };
                 if used >> column & 1 == 1 {
@@ -50,7 +52,12 @@ pub fn total_order(terms: &[Term], rows: usize, fields: usize) -> Option<usize> 
 
 /// The field that each balance is collocated with: the one whose ∂t it holds; what is left
 /// (continuity and pressure, definitions and auxiliary fields) by the derivatives held.
-pub fn pair(terms: &[Term], rows: usize, fields: usize, given: &[Option<usize>]) -> Option<Vec<usize>> {
+pub fn pair(
+    terms: &[Term],
+    rows: usize,
+    fields: usize,
+    given: &[Option<usize>],
+) -> Option<Vec<usize>> {
     let orders = orders(terms, rows, fields);
     let mut weights = vec![vec![Some(0_i64); fields]; rows];
     for (row, line) in weights.iter_mut().enumerate() {

@@ -43,7 +43,9 @@ fn solve(mut system: Vec<Vec<bool>>, unknowns: usize) -> Option<Vec<bool>> {
     let mut rank = 0;
     // Later unknowns (balances) are eliminated first, so that free choices fall on fields.
     for column in (0..unknowns).rev() {
-        let Some(found) = (rank..system.len()).find(|&r| system[r][column]) else { continue };
+        let Some(found) = (rank..system.len()).find(|&r| system[r][column]) else {
+            continue;
+        };
         system.swap(rank, found);
         let row = system[rank].clone();
         for (r, other) in system.iter_mut().enumerate() {

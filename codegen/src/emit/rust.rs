@@ -127,7 +127,11 @@ fn pretty(code: TokenStream) -> String {
 /// A name as Rust accepts it.
 fn identifier(name: &str) -> String {
     let lower = name.to_lowercase();
-    if syn::parse_str::<Ident>(&lower).is_ok() { lower } else { format!("{lower}_") }
+    if syn::parse_str::<Ident>(&lower).is_ok() {
+        lower
+    } else {
+        format!("{lower}_")
+    }
 }
 
 fn kernel_name(id: KernelId) -> Ident {
@@ -167,9 +171,10 @@ fn kernel_pattern(id: KernelId) -> TokenStream {
 fn residual_name(id: ResidualId) -> (Ident, TokenStream) {
     match id {
         ResidualId::Balances => (format_ident!("residual_balances"), quote!(Balances)),
-        ResidualId::Conditions(case) => {
-            (format_ident!("residual_conditions_{case}"), quote!(Conditions(#case)))
-        }
+        ResidualId::Conditions(case) => (
+            format_ident!("residual_conditions_{case}"),
+            quote!(Conditions(#case)),
+        ),
     }
 }
 
@@ -199,7 +204,9 @@ fn form_function(
 ) -> TokenStream {
     let body = body(kernel);
     let result = register(kernel.outputs[0]);
-    let arguments = kernel.inputs[1..].iter().map(|array| format_ident!("{}", array.name));
+    let arguments = kernel.inputs[1..]
+        .iter()
+        .map(|array| format_ident!("{}", array.name));
     let title = format!(
         " N{degree} of `{balance}` as a symmetric {degree}-linear form; on the diagonal:\n\n ```text\n {equation}\n ```\n\n{}",
         counts(kernel)
@@ -230,13 +237,20 @@ fn residual_function(name: &Ident, kernel: &Kernel) -> TokenStream {
 }
 
 fn counts(kernel: &Kernel) -> String {
-    format!(" {} operations, {} before sharing.", kernel.shared(), kernel.unshared)
+    format!(
+        " {} operations, {} before sharing.",
+        kernel.shared(),
+        kernel.unshared
+    )
 }
 
 /// Keeps the signature uniform where a kernel reads nothing of an input.
 fn unused_inputs(kernel: &Kernel) -> TokenStream {
     let read = |array: usize| {
-        kernel.operations.iter().any(|op| matches!(op, Operation::Input(a, _) if *a == array))
+        kernel
+            .operations
+            .iter()
+            .any(|op| matches!(op, Operation::Input(a, _) if *a == array))
     };
     let mut tokens = TokenStream::new();
     for (index, array) in kernel.inputs.iter().enumerate() {
@@ -260,7 +274,11 @@ fn outputs(kernel: &Kernel, generic: bool) -> TokenStream {
     for (index, &value) in kernel.outputs.iter().enumerate() {
         let index = proc_macro2::Literal::usize_unsuffixed(index);
         let name = register(value);
-        let value = if generic && kernel.real[value] { quote!(T::from(#name)) } else { quote!(#name) };
+        let value = if generic && kernel.real[value] {
+            quote!(T::from(#name))
+        } else {
+            quote!(#name)
+        };
         tokens.extend(quote!(out[#index] = #value;));
     }
     tokens
@@ -296,7 +314,11 @@ fn expression(kernel: &Kernel, operation: &Operation) -> TokenStream {
         }
         Operation::Subtract(a, b) => {
             let (x, y) = (register(*a), register(*b));
-            if mixed(*a, *b) { quote!(-#y + #x) } else { quote!(#x - #y) }
+            if mixed(*a, *b) {
+                quote!(-#y + #x)
+            } else {
+                quote!(#x - #y)
+            }
         }
         Operation::Multiply(a, b) => {
             let (x, y) = if mixed(*a, *b) { (b, a) } else { (a, b) };
@@ -305,7 +327,11 @@ fn expression(kernel: &Kernel, operation: &Operation) -> TokenStream {
         }
         Operation::Divide(a, b) => {
             let (x, y) = (register(*a), register(*b));
-            if mixed(*a, *b) { quote!(Number::recip(#y) * #x) } else { quote!(#x / #y) }
+            if mixed(*a, *b) {
+                quote!(Number::recip(#y) * #x)
+            } else {
+                quote!(#x / #y)
+            }
         }
         Operation::Negate(a) => {
             let x = register(*a);
@@ -316,7 +342,10 @@ fn expression(kernel: &Kernel, operation: &Operation) -> TokenStream {
             quote!(Number::sqrt(#x))
         }
         Operation::PowerI(a, exponent) => {
-            let (x, exponent) = (register(*a), proc_macro2::Literal::i32_unsuffixed(*exponent));
+            let (x, exponent) = (
+                register(*a),
+                proc_macro2::Literal::i32_unsuffixed(*exponent),
+            );
             quote!(Number::powi(#x, #exponent))
         }
         Operation::PowerF(a, exponent) => {
@@ -332,7 +361,11 @@ fn expression(kernel: &Kernel, operation: &Operation) -> TokenStream {
             let whole = branches.iter().all(|&b| real(b));
             let branches = branches.iter().map(|&b| {
                 let name = register(b);
-                if real(b) && !whole { quote!(T::from(#name)) } else { quote!(#name) }
+                if real(b) && !whole {
+                    quote!(T::from(#name))
+                } else {
+                    quote!(#name)
+                }
             });
             quote!(s::choose(#switch, &[#(#branches),*]))
         }

@@ -52,8 +52,12 @@ impl<'a> Writer<'a> {
     fn new(derivation: &'a Derivation) -> Self {
         let model = &derivation.model;
         let fields = model.field_names();
-        let adjoint_fields =
-            derivation.operators.pairing.iter().map(|&f| format!("{}†", fields[f])).collect();
+        let adjoint_fields = derivation
+            .operators
+            .pairing
+            .iter()
+            .map(|&f| format!("{}†", fields[f]))
+            .collect();
         Writer {
             derivation,
             fields,
@@ -81,7 +85,11 @@ impl<'a> Writer<'a> {
     fn place(&self, end: End) -> String {
         let model = &self.derivation.model;
         model.interval.as_ref().map_or(String::new(), |interval| {
-            let id = if end == End::Lower { interval.lower } else { interval.upper };
+            let id = if end == End::Lower {
+                interval.lower
+            } else {
+                interval.upper
+            };
             format!("at {} = {}", interval.name, self.print(id))
         })
     }
@@ -106,7 +114,14 @@ impl<'a> Writer<'a> {
     }
 
     /// Entry by entry: the coefficient, then the operator.
-    fn entries(&self, text: &mut String, terms: &[Term], rows: &[String], columns: &[String], time: bool) {
+    fn entries(
+        &self,
+        text: &mut String,
+        terms: &[Term],
+        rows: &[String],
+        columns: &[String],
+        time: bool,
+    ) {
         let mut blocks: BTreeMap<(usize, u8), Vec<String>> = BTreeMap::new();
         let mut sorted: Vec<&Term> = terms.iter().filter(|t| (t.jet.t > 0) == time).collect();
         sorted.sort_by_key(|t| (t.jet.y, t.jet.x, t.jet.absx));
@@ -119,7 +134,13 @@ impl<'a> Writer<'a> {
             });
         }
         for ((row, column), parts) in blocks {
-            let _ = writeln!(text, "  [{}, {}] {}", rows[row], columns[usize::from(column)], signed_sum(parts));
+            let _ = writeln!(
+                text,
+                "  [{}, {}] {}",
+                rows[row],
+                columns[usize::from(column)],
+                signed_sum(parts)
+            );
         }
     }
 
@@ -142,7 +163,12 @@ impl<'a> Writer<'a> {
         for case in &operators.cases {
             text += &self.case_title(&case.choices);
             for condition in &case.base_conditions {
-                let _ = writeln!(text, "  {}: {} = 0", self.place(condition.end), self.print(condition.residual));
+                let _ = writeln!(
+                    text,
+                    "  {}: {} = 0",
+                    self.place(condition.end),
+                    self.print(condition.residual)
+                );
             }
         }
         text
@@ -176,7 +202,12 @@ impl<'a> Writer<'a> {
         for case in &operators.cases {
             text += &self.case_title(&case.choices);
             for condition in &case.conditions {
-                let _ = writeln!(text, "  {}: {} = 0", self.place(condition.end), self.form(&condition.form));
+                let _ = writeln!(
+                    text,
+                    "  {}: {} = 0",
+                    self.place(condition.end),
+                    self.form(&condition.form)
+                );
             }
         }
         text += "Closure at k = 0\n";
@@ -192,15 +223,25 @@ impl<'a> Writer<'a> {
 
     fn closure(&self, closure: &CaseClosure) -> String {
         let density = |density: &[(Jet, Id)]| {
-            let terms: Vec<String> =
-                density.iter().map(|(jet, weight)| self.scaled(*weight, &self.jet(*jet))).collect();
+            let terms: Vec<String> = density
+                .iter()
+                .map(|(jet, weight)| self.scaled(*weight, &self.jet(*jet)))
+                .collect();
             terms.join(" + ")
         };
         match closure {
-            CaseClosure::Conserved { density: d, .. } => format!("  conserved: ∫ {} = 0\n", density(d)),
-            CaseClosure::Gauge { field, .. } => format!("  gauge: the constant of {}\n", self.fields[*field]),
+            CaseClosure::Conserved { density: d, .. } => {
+                format!("  conserved: ∫ {} = 0\n", density(d))
+            }
+            CaseClosure::Gauge { field, .. } => {
+                format!("  gauge: the constant of {}\n", self.fields[*field])
+            }
             CaseClosure::Unknown { field, density: d } => {
-                format!("  unknown {}, closed by ∫ {} = 0\n", self.fields[*field], density(d))
+                format!(
+                    "  unknown {}, closed by ∫ {} = 0\n",
+                    self.fields[*field],
+                    density(d)
+                )
             }
         }
     }
@@ -214,10 +255,19 @@ impl<'a> Writer<'a> {
                     .fields
                     .iter()
                     .zip(&parity.fields)
-                    .map(|(name, odd)| if *odd { format!("-{name}") } else { name.clone() })
+                    .map(|(name, odd)| {
+                        if *odd {
+                            format!("-{name}")
+                        } else {
+                            name.clone()
+                        }
+                    })
                     .collect();
                 let (before, after) = (self.fields.join(", "), signs.join(", "));
-                format!("Symmetry: {0} → -{0} with ({before}) → ({after})\n", model.periodic)
+                format!(
+                    "Symmetry: {0} → -{0} with ({before}) → ({after})\n",
+                    model.periodic
+                )
             }
         }
     }
@@ -225,9 +275,21 @@ impl<'a> Writer<'a> {
     fn adjoint(&self) -> String {
         let operators = &self.derivation.operators;
         let mut text = String::from("Adjoint mass matrix M0† [field, balance's adjoint]\n");
-        self.entries(&mut text, &operators.adjoint, &self.fields, &self.adjoint_fields, true);
+        self.entries(
+            &mut text,
+            &operators.adjoint,
+            &self.fields,
+            &self.adjoint_fields,
+            true,
+        );
         text += "Adjoint operator L† [field, balance's adjoint]\n";
-        self.entries(&mut text, &operators.adjoint, &self.fields, &self.adjoint_fields, false);
+        self.entries(
+            &mut text,
+            &operators.adjoint,
+            &self.fields,
+            &self.adjoint_fields,
+            false,
+        );
         text += "Adjoint boundary conditions\n";
         for case in &operators.cases {
             text += &self.case_title(&case.choices);
@@ -237,7 +299,12 @@ impl<'a> Writer<'a> {
                 }
                 Ok(conditions) => {
                     for condition in conditions {
-                        let _ = writeln!(text, "  {}: {} = 0", self.place(condition.end), self.adjoint_condition(condition));
+                        let _ = writeln!(
+                            text,
+                            "  {}: {} = 0",
+                            self.place(condition.end),
+                            self.adjoint_condition(condition)
+                        );
                     }
                 }
             }
@@ -287,7 +354,11 @@ impl<'a> Writer<'a> {
             let jets: Vec<String> = monomial.iter().map(|&jet| self.jet(jet)).collect();
             parts.push(self.scaled(coefficient, &jets.join(" ")));
         }
-        if parts.is_empty() { "0".into() } else { signed_sum(parts) }
+        if parts.is_empty() {
+            "0".into()
+        } else {
+            signed_sum(parts)
+        }
     }
 }
 

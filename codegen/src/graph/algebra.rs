@@ -81,10 +81,12 @@ impl Graph {
     pub fn sum(&mut self, parts: impl IntoIterator<Item = (Id, Rational)>) -> Id {
         let mut constant = Rational::zero();
         let mut terms: BTreeMap<Id, Rational> = BTreeMap::new();
+        let mut work = 0;
         for (id, coefficient) in parts {
             match self.node(id) {
                 Node::Number(value) => constant += value * &coefficient,
                 Node::Sum(inner, inner_terms) => {
+                    work += inner_terms.len();
                     constant += inner * &coefficient;
                     for (term, c) in inner_terms {
                         *terms.entry(*term).or_default() += c * &coefficient;
@@ -93,6 +95,7 @@ impl Graph {
                 _ => *terms.entry(id).or_default() += coefficient,
             }
         }
+        self.work += work;
         terms.retain(|_, c| !c.is_zero());
         let mut terms: Vec<_> = terms.into_iter().collect();
         match (terms.len(), constant.is_zero()) {
@@ -123,6 +126,7 @@ impl Graph {
         let mut number = Rational::one();
         let mut factors: BTreeMap<Id, Rational> = BTreeMap::new();
         let mut stack: Vec<(Id, Rational)> = parts.into_iter().collect();
+        let mut work = 0;
         stack.reverse();
         while let Some((id, exponent)) = stack.pop() {
             if exponent.is_zero() {
@@ -135,6 +139,7 @@ impl Graph {
                 },
                 // (a b)^q = a^q b^q holds on every branch only for integer q.
                 Node::Product(inner) if exponent.is_integer() => {
+                    work += inner.len();
                     for (base, e) in inner {
                         stack.push((*base, e * &exponent));
                     }
@@ -153,7 +158,9 @@ impl Graph {
                     }
                 }
                 // A sum of mostly negative terms gives its sign away, so that equal sums meet.
-                Node::Sum(constant, terms) if exponent.is_integer() && mostly_negative(constant, terms) => {
+                Node::Sum(constant, terms)
+                    if exponent.is_integer() && mostly_negative(constant, terms) =>
+                {
                     let negated = self.neg(id);
                     if !is_even(&exponent) {
                         number = -number;
@@ -163,6 +170,7 @@ impl Graph {
                 _ => *factors.entry(id).or_default() += exponent,
             }
         }
+        self.work += work;
         if number.is_zero() {
             return self.zero();
         }
@@ -250,7 +258,9 @@ impl Graph {
     }
 
     fn extract_common(&mut self, id: Id) -> Id {
-        let Node::Sum(constant, terms) = self.node(id).clone() else { return id };
+        let Node::Sum(constant, terms) = self.node(id).clone() else {
+            return id;
+        };
         if terms.len() + usize::from(!constant.is_zero()) < 2 {
             return id;
         }
@@ -265,9 +275,12 @@ impl Graph {
             lists.push(BTreeMap::new());
         }
         let mut common = Vec::new();
-        let bases: std::collections::BTreeSet<Id> = lists.iter().flat_map(|l| l.keys().copied()).collect();
+        let bases: std::collections::BTreeSet<Id> =
+            lists.iter().flat_map(|l| l.keys().copied()).collect();
         for base in bases {
-            let exponents = lists.iter().map(|l| l.get(&base).cloned().unwrap_or_default());
+            let exponents = lists
+                .iter()
+                .map(|l| l.get(&base).cloned().unwrap_or_default());
             let least = exponents.min().unwrap_or_default();
             if !least.is_zero() {
                 common.push((base, least));

@@ -60,8 +60,10 @@ impl Graph {
                 self.mul(outer, inner)
             }
             Node::Select(switch, branches) => {
-                let branches =
-                    branches.into_iter().map(|b| self.differentiate_memo(b, by, memo)).collect();
+                let branches = branches
+                    .into_iter()
+                    .map(|b| self.differentiate_memo(b, by, memo))
+                    .collect();
                 self.select(switch, branches)
             }
             leaf => self.differentiate_leaf(&leaf, by),
@@ -96,7 +98,9 @@ impl Graph {
                 self.one()
             }
             (Node::BaseLaw(atom), Variable::AlongBase) => self.base_law(atom.dy()),
-            (Node::Slot(a, p), Variable::Slot(array, position)) if (*a, *p) == (array, position) => {
+            (Node::Slot(a, p), Variable::Slot(array, position))
+                if (*a, *p) == (array, position) =>
+            {
                 self.one()
             }
             _ => self.zero(),

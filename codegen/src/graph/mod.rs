@@ -33,6 +33,8 @@ impl Id {
 pub struct Graph {
     nodes: Vec<Node>,
     known: HashMap<Node, Id>,
+    /// Terms and factors handled so far.
+    work: usize,
 }
 
 impl Graph {
@@ -49,6 +51,11 @@ impl Graph {
     /// Number of distinct expressions met so far.
     pub fn len(&self) -> usize {
         self.nodes.len()
+    }
+
+    /// Terms and factors that constructors have handled: a measure of time spent.
+    pub fn work(&self) -> usize {
+        self.work
     }
 
     /// Whether no expression has been made yet.
@@ -94,6 +101,9 @@ impl Graph {
             }
         }
         // A child is always interned before its parent.
-        (0..self.nodes.len()).filter(|&i| seen[i]).map(|i| Id(i as u32)).collect()
+        (0..self.nodes.len())
+            .filter(|&i| seen[i])
+            .map(|i| Id(i as u32))
+            .collect()
     }
 }

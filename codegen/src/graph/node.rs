@@ -16,7 +16,13 @@ pub struct Jet {
 impl Jet {
     /// The field itself.
     pub fn value(field: usize) -> Self {
-        Jet { field: field as u8, t: 0, x: 0, absx: 0, y: 0 }
+        Jet {
+            field: field as u8,
+            t: 0,
+            x: 0,
+            absx: 0,
+            y: 0,
+        }
     }
 
     /// Whether a y-dependent base state has this jet (no x or t in it).
@@ -58,7 +64,10 @@ impl LawAtom {
 
     /// The atom with one more y-derivative.
     pub fn dy(&self) -> Self {
-        LawAtom { y: self.y + 1, ..self.clone() }
+        LawAtom {
+            y: self.y + 1,
+            ..self.clone()
+        }
     }
 }
 

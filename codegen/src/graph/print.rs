@@ -41,7 +41,11 @@ impl Printer<'_> {
 
     fn at(&self, id: Id, context: Binding) -> String {
         let (text, binding) = self.text(id);
-        if binding < context { format!("({text})") } else { text }
+        if binding < context {
+            format!("({text})")
+        } else {
+            text
+        }
     }
 
     fn text(&self, id: Id) -> (String, Binding) {
@@ -54,19 +58,26 @@ impl Printer<'_> {
             Node::Jet(jet) => (self.jet(*jet, ""), Binding::Power),
             Node::Base(field, order) => {
                 let marks = self.coordinate.repeat(usize::from(*order));
-                (subscripted(&format!("{}⁰", self.fields[*field]), &marks), Binding::Power)
+                (
+                    subscripted(&format!("{}⁰", self.fields[*field]), &marks),
+                    Binding::Power,
+                )
             }
             Node::StateLaw(atom) => (self.law(atom, ""), Binding::Power),
             Node::BaseLaw(atom) => (self.law(atom, "⁰"), Binding::Power),
             Node::Sum(constant, terms) => (self.sum(constant, terms), Binding::Sum),
             Node::Product(factors) => (self.product(factors), Binding::Product),
-            Node::Call(function, argument) => {
-                (format!("{}({})", function.name(), self.print(*argument)), Binding::Power)
-            }
+            Node::Call(function, argument) => (
+                format!("{}({})", function.name(), self.print(*argument)),
+                Binding::Power,
+            ),
             Node::Select(switch, branches) => {
                 let branches: Vec<_> = branches.iter().map(|&b| self.print(b)).collect();
                 let name = &self.parameters[*switch];
-                (format!("select({name}; {})", branches.join(", ")), Binding::Power)
+                (
+                    format!("select({name}; {})", branches.join(", ")),
+                    Binding::Power,
+                )
             }
             Node::Derivative(operator, argument) => {
                 let name = match operator {
@@ -77,9 +88,10 @@ impl Printer<'_> {
                 };
                 (format!("{name}({})", self.print(*argument)), Binding::Power)
             }
-            Node::Slot(array, position) => {
-                (format!("{}[{position}]", self.slots[*array]), Binding::Power)
-            }
+            Node::Slot(array, position) => (
+                format!("{}[{position}]", self.slots[*array]),
+                Binding::Power,
+            ),
         }
     }
 
@@ -108,10 +120,18 @@ impl Printer<'_> {
         let order = std::iter::once(first).chain((0..terms.len()).filter(|&i| i != first));
         for i in order {
             let (id, coefficient) = &terms[i];
-            push_signed(&mut text, coefficient.is_negative(), &self.scaled(*id, &coefficient.abs()));
+            push_signed(
+                &mut text,
+                coefficient.is_negative(),
+                &self.scaled(*id, &coefficient.abs()),
+            );
         }
         if *constant != Rational::default() {
-            push_signed(&mut text, constant.is_negative(), &number(&constant.abs()).0);
+            push_signed(
+                &mut text,
+                constant.is_negative(),
+                &number(&constant.abs()).0,
+            );
         }
         text
     }
@@ -141,7 +161,11 @@ impl Printer<'_> {
                 .collect()
         };
         let (above, below) = (side(false), side(true));
-        let numerator = if above.is_empty() { "1".into() } else { above.join(" ") };
+        let numerator = if above.is_empty() {
+            "1".into()
+        } else {
+            above.join(" ")
+        };
         match below.len() {
             0 => numerator,
             1 => format!("{numerator}/{}", below[0]),
@@ -166,7 +190,11 @@ impl Printer<'_> {
 }
 
 fn subscripted(name: &str, marks: &str) -> String {
-    if marks.is_empty() { name.into() } else { format!("{name}_{marks}") }
+    if marks.is_empty() {
+        name.into()
+    } else {
+        format!("{name}_{marks}")
+    }
 }
 
 fn push_signed(text: &mut String, negative: bool, term: &str) {

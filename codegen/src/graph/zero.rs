@@ -48,7 +48,11 @@ impl Graph {
                     // b^e = b^⌊e⌋ · root, the root an atom of its own
                     let whole = exponent.floor();
                     let size = whole.numer().abs().to_u64()?;
-                    let signed = if whole.is_negative() { inverse(base)? } else { base };
+                    let signed = if whole.is_negative() {
+                        inverse(base)?
+                    } else {
+                        base
+                    };
                     let mut factor = power(signed, size);
                     if !exponent.is_integer() {
                         factor = mul(factor, scatter((seed, base, exponent - whole)));

@@ -78,9 +78,18 @@ impl Assembler<'_> {
         }
         outputs.push(opened);
         for &(field, order) in &atoms {
-            outputs.push(self.graph.differentiate(opened, Variable::Base(field, order)));
+            outputs.push(
+                self.graph
+                    .differentiate(opened, Variable::Base(field, order)),
+            );
         }
-        atoms.into_iter().map(|(field, order)| BaseJet { field, order: usize::from(order) }).collect()
+        atoms
+            .into_iter()
+            .map(|(field, order)| BaseJet {
+                field,
+                order: usize::from(order),
+            })
+            .collect()
     }
 
     fn structure(&mut self) -> Structure {
@@ -91,13 +100,35 @@ impl Assembler<'_> {
         };
         self.kernel(KernelId::Interval, ends);
         let base = self.base();
-        let linear = operators.linear.iter().map(|t| TermInfo { row: t.row, jet: t.jet }).collect();
-        let adjoint = operators.adjoint.iter().map(|t| TermInfo { row: t.row, jet: t.jet }).collect();
+        let linear = operators
+            .linear
+            .iter()
+            .map(|t| TermInfo {
+                row: t.row,
+                jet: t.jet,
+            })
+            .collect();
+        let adjoint = operators
+            .adjoint
+            .iter()
+            .map(|t| TermInfo {
+                row: t.row,
+                jet: t.jet,
+            })
+            .collect();
         self.opened(KernelId::Divisors, operators.divisors.clone());
-        self.opened(KernelId::Linear, operators.linear.iter().map(|t| t.coefficient).collect());
-        self.opened(KernelId::Adjoint, operators.adjoint.iter().map(|t| t.coefficient).collect());
+        self.opened(
+            KernelId::Linear,
+            operators.linear.iter().map(|t| t.coefficient).collect(),
+        );
+        self.opened(
+            KernelId::Adjoint,
+            operators.adjoint.iter().map(|t| t.coefficient).collect(),
+        );
         let (form_jets, coefficients) = self.nonlinear();
-        let cases = (0..operators.cases.len()).map(|case| self.case(case)).collect();
+        let cases = (0..operators.cases.len())
+            .map(|case| self.case(case))
+            .collect();
         let amplitude = self.amplitude();
         let outputs = self.outputs();
         let automatic = |index: usize| model.base.automatic.iter().any(|(p, _)| *p == index);
@@ -136,10 +167,10 @@ impl Assembler<'_> {
             base_order: self.base_order,
             base,
             pairing: operators.pairing.clone(),
-            parity: operators
-                .parity
-                .as_ref()
-                .map(|p| ParityInfo { fields: p.fields.clone(), rows: p.rows.clone() }),
+            parity: operators.parity.as_ref().map(|p| ParityInfo {
+                fields: p.fields.clone(),
+                rows: p.rows.clone(),
+            }),
             linear,
             adjoint,
             form_jets,
@@ -165,7 +196,12 @@ impl Assembler<'_> {
         for row in &operators.base {
             let jets = self.with_jacobian(row.residual, &mut outputs);
             let (balance, field, order) = (row.balance, row.field, usize::from(row.order));
-            rows.push(BaseRowInfo { balance, field, order, jets });
+            rows.push(BaseRowInfo {
+                balance,
+                field,
+                order,
+                jets,
+            });
         }
         self.kernel(KernelId::Base, outputs);
         let mut outputs = Vec::new();
@@ -193,7 +229,10 @@ impl Assembler<'_> {
                 _ => None,
             });
             conditions.push(value);
-            automatic.push(AutomaticInfo { parameter: *parameter, end: condition.end });
+            automatic.push(AutomaticInfo {
+                parameter: *parameter,
+                end: condition.end,
+            });
         }
         self.kernel(KernelId::Automatic, conditions);
         BaseInfo {
@@ -219,7 +258,10 @@ impl Assembler<'_> {
         let mut base_conditions = Vec::new();
         for condition in &case.base_conditions {
             let jets = self.with_jacobian(condition.residual, &mut outputs);
-            base_conditions.push(BaseConditionInfo { end: condition.end, jets });
+            base_conditions.push(BaseConditionInfo {
+                end: condition.end,
+                jets,
+            });
         }
         self.kernel(KernelId::BaseConditions(index), outputs);
 
@@ -228,7 +270,11 @@ impl Assembler<'_> {
         for condition in &case.conditions {
             coefficients.extend(condition.form.terms.values().copied());
             let monomials = condition.form.terms.keys().cloned().collect();
-            conditions.push(ConditionInfo { end: condition.end, field: condition.field, monomials });
+            conditions.push(ConditionInfo {
+                end: condition.end,
+                field: condition.field,
+                monomials,
+            });
         }
         self.opened(KernelId::Conditions(index), coefficients);
 
@@ -243,7 +289,11 @@ impl Assembler<'_> {
                         coefficients.push(id);
                     }
                 }
-                infos.push(AdjointConditionInfo { end: condition.end, balance: condition.balance, jets });
+                infos.push(AdjointConditionInfo {
+                    end: condition.end,
+                    balance: condition.balance,
+                    jets,
+                });
             }
             infos
         });
@@ -253,16 +303,27 @@ impl Assembler<'_> {
         let mut closures = Vec::new();
         for closure in &case.closures {
             let (kind, field, density, column) = match closure {
-                CaseClosure::Conserved { density, column } => {
-                    (ClosureKind::Conserved, None, density.clone(), column.clone())
-                }
+                CaseClosure::Conserved { density, column } => (
+                    ClosureKind::Conserved,
+                    None,
+                    density.clone(),
+                    column.clone(),
+                ),
                 CaseClosure::Gauge { field, column } => {
                     let one = self.graph.one();
-                    (ClosureKind::Gauge, Some(*field), vec![(Jet::value(*field), one)], column.clone())
+                    (
+                        ClosureKind::Gauge,
+                        Some(*field),
+                        vec![(Jet::value(*field), one)],
+                        column.clone(),
+                    )
                 }
-                CaseClosure::Unknown { field, density } => {
-                    (ClosureKind::Unknown, Some(*field), density.clone(), Vec::new())
-                }
+                CaseClosure::Unknown { field, density } => (
+                    ClosureKind::Unknown,
+                    Some(*field),
+                    density.clone(),
+                    Vec::new(),
+                ),
             };
             coefficients.extend(density.iter().map(|(_, id)| *id));
             coefficients.extend(column.iter().map(|(_, id)| *id));
@@ -274,7 +335,13 @@ impl Assembler<'_> {
             });
         }
         self.opened(KernelId::Closures(index), coefficients);
-        CaseInfo { choices: case.choices.clone(), base_conditions, conditions, adjoint, closures }
+        CaseInfo {
+            choices: case.choices.clone(),
+            base_conditions,
+            conditions,
+            adjoint,
+            closures,
+        }
     }
 
     fn amplitude(&mut self) -> AmplitudeInfo {
@@ -283,25 +350,47 @@ impl Assembler<'_> {
                 let mut outputs: Vec<Id> = weights.iter().map(|(_, w)| *w).collect();
                 outputs.push(*value);
                 let weighted = weights.iter().map(|(field, _)| *field).collect();
-                (outputs, AmplitudeInfo { weighted, field: None, description: String::new() })
+                (
+                    outputs,
+                    AmplitudeInfo {
+                        weighted,
+                        field: None,
+                        description: String::new(),
+                    },
+                )
             }
-            Amplitude::Point { field, place, value } => {
+            Amplitude::Point {
+                field,
+                place,
+                value,
+            } => {
                 let place = place.unwrap_or_else(|| self.graph.zero());
-                (vec![*value, place], AmplitudeInfo {
-                    weighted: Vec::new(),
-                    field: Some(*field),
-                    description: String::new(),
-                })
+                (
+                    vec![*value, place],
+                    AmplitudeInfo {
+                        weighted: Vec::new(),
+                        field: Some(*field),
+                        description: String::new(),
+                    },
+                )
             }
         };
         let description = self.describe_amplitude();
         self.kernel(KernelId::Amplitude, outputs);
-        AmplitudeInfo { description, ..info }
+        AmplitudeInfo {
+            description,
+            ..info
+        }
     }
 
     fn describe_amplitude(&self) -> String {
         let fields = self.model.field_names();
-        let parameters: Vec<String> = self.model.parameters.iter().map(|p| p.name.clone()).collect();
+        let parameters: Vec<String> = self
+            .model
+            .parameters
+            .iter()
+            .map(|p| p.name.clone())
+            .collect();
         let coordinate = self.model.coordinate();
         let printer = Printer {
             graph: self.graph,
@@ -331,7 +420,11 @@ impl Assembler<'_> {
                     format!("{sum} = {}", printer.print(*value))
                 }
             }
-            Amplitude::Point { field, place, value } => match (place, &self.model.interval) {
+            Amplitude::Point {
+                field,
+                place,
+                value,
+            } => match (place, &self.model.interval) {
                 (Some(place), Some(_)) => format!(
                     "|{}({})| = {}",
                     fields[*field],
@@ -388,12 +481,24 @@ impl Assembler<'_> {
             }
             _ => None,
         };
-        let point = || vec![Array { name: "p", real: true }];
+        let point = || {
+            vec![Array {
+                name: "p",
+                real: true,
+            }]
+        };
         let kernels: Vec<(KernelId, Kernel)> = self
             .expressions
             .iter()
             .map(|(id, outputs)| {
-                (*id, Lowering { inputs: point(), locate: &locate }.lower(graph, outputs))
+                (
+                    *id,
+                    Lowering {
+                        inputs: point(),
+                        locate: &locate,
+                    }
+                    .lower(graph, outputs),
+                )
             })
             .collect();
         let locate = |node: &Node| match node {
@@ -403,27 +508,58 @@ impl Assembler<'_> {
             Node::Jet(jet) => residual_jets.iter().position(|j| j == jet).map(|p| (1, p)),
             _ => None,
         };
-        let arrays =
-            || vec![Array { name: "p", real: true }, Array { name: "x", real: false }];
+        let arrays = || {
+            vec![
+                Array {
+                    name: "p",
+                    real: true,
+                },
+                Array {
+                    name: "x",
+                    real: false,
+                },
+            ]
+        };
         let residuals = residual_outputs
             .iter()
             .map(|(id, outputs)| {
-                (*id, Lowering { inputs: arrays(), locate: &locate }.lower(graph, outputs))
+                (
+                    *id,
+                    Lowering {
+                        inputs: arrays(),
+                        locate: &locate,
+                    }
+                    .lower(graph, outputs),
+                )
             })
             .collect();
         let count = |kernels: &[(KernelId, Kernel)], of: fn(&Kernel) -> usize| -> usize {
-            let real: usize = kernels.iter().map(|(_, k)| of(k)).fold(0, usize::saturating_add);
+            let real: usize = kernels
+                .iter()
+                .map(|(_, k)| of(k))
+                .fold(0, usize::saturating_add);
             real.saturating_add(forms.iter().flatten().flatten().map(of).sum())
         };
-        structure.operations = vec![count(&kernels, |k| k.unshared), count(&kernels, Kernel::shared)];
-        ModelKernels { structure, kernels, forms, residuals }
+        structure.operations = vec![
+            count(&kernels, |k| k.unshared),
+            count(&kernels, Kernel::shared),
+        ];
+        ModelKernels {
+            structure,
+            kernels,
+            forms,
+            residuals,
+        }
     }
 
     /// The unexpanded residuals in the fields' derivatives, laws opened.
     fn residuals(&mut self) -> Vec<(ResidualId, Vec<Id>)> {
         let mut residuals = Vec::new();
         let balances: Vec<Id> = self.model.balances.iter().map(|b| b.residual).collect();
-        let opened = balances.into_iter().map(|id| self.opener.at_state(self.graph, id)).collect();
+        let opened = balances
+            .into_iter()
+            .map(|id| self.opener.at_state(self.graph, id))
+            .collect();
         residuals.push((ResidualId::Balances, opened));
         for (index, case) in self.operators.cases.iter().enumerate() {
             let mut opened = Vec::new();
@@ -437,8 +573,11 @@ impl Assembler<'_> {
 
     fn forms(&mut self, structure: &Structure) -> Vec<Vec<Option<Kernel>>> {
         let (jets, coefficients) = form_tables(&self.operators.nonlinear);
-        let position: HashMap<Id, usize> =
-            coefficients.iter().enumerate().map(|(i, id)| (*id, i)).collect();
+        let position: HashMap<Id, usize> = coefficients
+            .iter()
+            .enumerate()
+            .map(|(i, id)| (*id, i))
+            .collect();
         const NAMES: [&str; 8] = ["x", "y", "z", "w", "v", "u", "s", "r"];
         let mut kernels = Vec::new();
         for (index, rows) in self.operators.nonlinear.iter().enumerate() {
@@ -450,13 +589,26 @@ impl Assembler<'_> {
                     continue;
                 }
                 let polar = polarise(self.graph, form, degree, &jets, &position);
-                let mut inputs = vec![Array { name: "c", real: true }];
-                inputs.extend(NAMES[..degree].iter().map(|&name| Array { name, real: false }));
+                let mut inputs = vec![Array {
+                    name: "c",
+                    real: true,
+                }];
+                inputs.extend(
+                    NAMES[..degree]
+                        .iter()
+                        .map(|&name| Array { name, real: false }),
+                );
                 let locate = |node: &Node| match node {
                     Node::Slot(array, position) => Some((*array, *position)),
                     _ => None,
                 };
-                line.push(Some(Lowering { inputs, locate: &locate }.lower(self.graph, &[polar])));
+                line.push(Some(
+                    Lowering {
+                        inputs,
+                        locate: &locate,
+                    }
+                    .lower(self.graph, &[polar]),
+                ));
             }
             kernels.push(line);
         }
@@ -522,7 +674,9 @@ fn permutation_sum(
     place: &HashMap<Jet, usize>,
     memo: &mut BTreeMap<(Monomial, Vec<usize>), Id>,
 ) -> Id {
-    let Some((last, rest)) = monomial.split_last() else { return graph.one() };
+    let Some((last, rest)) = monomial.split_last() else {
+        return graph.one();
+    };
     let key = (monomial.to_vec(), arguments.to_vec());
     if let Some(&known) = memo.get(&key) {
         return known;
@@ -541,7 +695,10 @@ fn permutation_sum(
 }
 
 fn residual_jets(graph: &Graph, residuals: &[(ResidualId, Vec<Id>)]) -> Vec<Jet> {
-    let roots: Vec<Id> = residuals.iter().flat_map(|(_, ids)| ids.iter().copied()).collect();
+    let roots: Vec<Id> = residuals
+        .iter()
+        .flat_map(|(_, ids)| ids.iter().copied())
+        .collect();
     let mut jets = BTreeSet::new();
     for node in graph.topological(&roots) {
         if let Node::Jet(jet) = graph.node(node) {

@@ -41,7 +41,10 @@ impl Lowering<'_> {
             let cost = unshared_cost(graph, id, &written);
             written.insert(id, cost);
         }
-        let unshared = outputs.iter().map(|id| written[id]).fold(0, usize::saturating_add);
+        let unshared = outputs
+            .iter()
+            .map(|id| written[id])
+            .fold(0, usize::saturating_add);
         let outputs: Vec<Register> = outputs.iter().map(|id| builder.values[id]).collect();
         let mut kernel = Kernel {
             inputs: builder.lowering.inputs,
@@ -201,7 +204,10 @@ impl Builder<'_> {
             return self.integer_power(base, integer);
         }
         if fraction != Rational::new(1.into(), 2.into()) {
-            return self.push(Operation::PowerF(base, exponent.to_f64().unwrap_or(f64::NAN)));
+            return self.push(Operation::PowerF(
+                base,
+                exponent.to_f64().unwrap_or(f64::NAN),
+            ));
         }
         let root = self.push(Operation::Sqrt(base));
         if integer == 0 {
@@ -229,7 +235,9 @@ fn drop_unused(kernel: &mut Kernel) {
     }
     for register in (0..count).rev() {
         if needed[register] {
-            operands(&kernel.operations[register], |operand| needed[operand] = true);
+            operands(&kernel.operations[register], |operand| {
+                needed[operand] = true
+            });
         }
     }
     let mut moved = vec![0; count];
@@ -239,9 +247,13 @@ fn drop_unused(kernel: &mut Kernel) {
         next += usize::from(needed[register]);
     }
     let mut register = 0..count;
-    kernel.operations.retain(|_| register.next().is_some_and(|r| needed[r]));
+    kernel
+        .operations
+        .retain(|_| register.next().is_some_and(|r| needed[r]));
     let mut register = 0..count;
-    kernel.real.retain(|_| register.next().is_some_and(|r| needed[r]));
+    kernel
+        .real
+        .retain(|_| register.next().is_some_and(|r| needed[r]));
     for operation in &mut kernel.operations {
         rename(operation, &moved);
     }

@@ -139,9 +139,16 @@ pub enum Closure {
 
 pub enum Amplitude {
     /// ∫ Σ weight |field|² = value
-    Integral { weights: Vec<(usize, Id)>, value: Id },
+    Integral {
+        weights: Vec<(usize, Id)>,
+        value: Id,
+    },
     /// |field| = |value| at a place
-    Point { field: usize, place: Option<Id>, value: Id },
+    Point {
+        field: usize,
+        place: Option<Id>,
+        value: Id,
+    },
 }
 
 pub struct Output {

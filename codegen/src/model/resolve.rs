@@ -10,8 +10,9 @@ use crate::syntax::{parse_laws, parse_model};
 use std::collections::HashMap;
 
 /// Words that name something in the language or on the command line.
-const RESERVED: [&str; 12] =
-    ["t", "k", "pi", "dt", "sqrt", "exp", "log", "sin", "cos", "select", "integral", "at"];
+const RESERVED: [&str; 12] = [
+    "t", "k", "pi", "dt", "sqrt", "exp", "log", "sin", "cos", "select", "integral", "at",
+];
 
 /// Resolves a spec, or reports every mistake that its form shows.
 pub fn resolve(sources: &Sources) -> Result<Model, Diagnostics> {
@@ -20,7 +21,14 @@ pub fn resolve(sources: &Sources) -> Result<Model, Diagnostics> {
     let (tree, mut mistakes) = parse_model(0, &sources.spec.text);
     names.scopes.push(Scope::default());
     let mut law_files = HashMap::new();
-    let imported = load_imports(&tree.imports, 0, sources, &mut names, &mut law_files, &mut mistakes);
+    let imported = load_imports(
+        &tree.imports,
+        0,
+        sources,
+        &mut names,
+        &mut law_files,
+        &mut mistakes,
+    );
     let model = if mistakes.is_empty() {
         statement::model(&tree, &imported, &mut names, &mut mistakes)
     } else {
@@ -28,7 +36,10 @@ pub fn resolve(sources: &Sources) -> Result<Model, Diagnostics> {
     };
     match model {
         Some(model) if mistakes.is_empty() => Ok(model),
-        _ => Err(Diagnostics { files: names.files, list: mistakes }),
+        _ => Err(Diagnostics {
+            files: names.files,
+            list: mistakes,
+        }),
     }
 }
 
@@ -51,11 +62,16 @@ fn load_imports(
 ) -> Vec<Imported> {
     let mut found = Vec::new();
     for import in imports {
-        let Some(scope) = load_file(&import.file, sources, names, known, mistakes) else { continue };
+        let Some(scope) = load_file(&import.file, sources, names, known, mistakes) else {
+            continue;
+        };
         for item in &import.items {
             let Some(definition) = names.scopes[scope].definitions.get(&item.law.text) else {
-                let defined: Vec<&str> =
-                    names.scopes[scope].definitions.keys().map(String::as_str).collect();
+                let defined: Vec<&str> = names.scopes[scope]
+                    .definitions
+                    .keys()
+                    .map(String::as_str)
+                    .collect();
                 let near = nearest(&item.law.text, defined);
                 let message = format!("`{}` has no law `{}`", import.file.text, item.law.text);
                 let expected = "the name of a law in that file";
@@ -71,7 +87,12 @@ fn load_imports(
                 imports.insert(item.alias.text.clone(), (scope, law.text.clone()));
             }
             let (alias, arguments) = (item.alias.clone(), item.arguments.clone());
-            found.push(Imported { alias, scope, law, arguments });
+            found.push(Imported {
+                alias,
+                scope,
+                law,
+                arguments,
+            });
         }
     }
     found
@@ -95,8 +116,12 @@ fn load_file(
             _ => format!("one of {}", available.join(", ")),
         };
         mistakes.push(
-            Diagnostic::new(name.location.clone(), format!("there is no law file `{}`", name.text), expected)
-                .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))),
+            Diagnostic::new(
+                name.location.clone(),
+                format!("there is no law file `{}`", name.text),
+                expected,
+            )
+            .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))),
         );
         return None;
     };
@@ -113,10 +138,14 @@ fn load_file(
     }
     let target = &mut names.scopes[scope];
     for item in &tree.parameters {
-        target.parameters.insert(item.name.text.clone(), item.clone());
+        target
+            .parameters
+            .insert(item.name.text.clone(), item.clone());
     }
     for definition in &tree.definitions {
-        let previous = target.definitions.insert(definition.name.text.clone(), definition.clone());
+        let previous = target
+            .definitions
+            .insert(definition.name.text.clone(), definition.clone());
         if previous.is_some() {
             mistakes.push(twice(&definition.name));
         }
@@ -143,7 +172,11 @@ pub(super) fn bind_imports(
                 // Keep the name known, so that its uses are not reported too.
                 names.laws.insert(item.alias.text.clone(), laws.len());
                 let body = names.graph.zero();
-                laws.push(Law { name: item.alias.text.clone(), doc: String::new(), body });
+                laws.push(Law {
+                    name: item.alias.text.clone(),
+                    doc: String::new(),
+                    body,
+                });
             }
         }
     }
@@ -155,29 +188,57 @@ fn bind(item: &Imported, names: &mut Names) -> Resolved<Law> {
     let formal = definition.arguments.clone().unwrap_or_default();
     let actual = item.arguments.clone().unwrap_or_else(|| {
         // By default a law is applied to the fields named like its arguments.
-        formal.iter().map(|n| Name { text: n.text.clone(), location: item.alias.location.clone() }).collect()
+        formal
+            .iter()
+            .map(|n| Name {
+                text: n.text.clone(),
+                location: item.alias.location.clone(),
+            })
+            .collect()
     });
     if actual.len() != formal.len() {
-        let message = format!("`{}` takes {} argument(s), {} given", item.law.text, formal.len(), actual.len());
-        return Err(Diagnostic::new(item.alias.location.clone(), message, format!("{} field(s)", formal.len())));
+        let message = format!(
+            "`{}` takes {} argument(s), {} given",
+            item.law.text,
+            formal.len(),
+            actual.len()
+        );
+        return Err(Diagnostic::new(
+            item.alias.location.clone(),
+            message,
+            format!("{} field(s)", formal.len()),
+        ));
     }
     let mut values = Vec::with_capacity(actual.len());
     for argument in &actual {
         let Some(&field) = names.fields.get(&argument.text) else {
-            let message = format!("the law `{}` takes `{}`, which is not a field here", item.law.text, argument.text);
+            let message = format!(
+                "the law `{}` takes `{}`, which is not a field here",
+                item.law.text, argument.text
+            );
             let fields: Vec<&str> = names.fields.keys().map(String::as_str).collect();
             let near = nearest(&argument.text, fields.iter().copied());
-            return Err(Diagnostic::new(argument.location.clone(), message, "the name of a field")
-                .hint(match near {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("apply it to fields: `{}(…) as {}`", item.law.text, item.alias.text),
-                }));
+            return Err(
+                Diagnostic::new(argument.location.clone(), message, "the name of a field").hint(
+                    match near {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => format!(
+                            "apply it to fields: `{}(…) as {}`",
+                            item.law.text, item.alias.text
+                        ),
+                    },
+                ),
+            );
         };
         values.push(names.graph.jet(crate::graph::Jet::value(field)));
     }
     let place = item.alias.location.clone();
     let body = names.expand(item.scope, &definition, &values, &place, Context::Law)?;
-    Ok(Law { name: item.alias.text.clone(), doc: definition.doc.clone(), body })
+    Ok(Law {
+        name: item.alias.text.clone(),
+        doc: definition.doc.clone(),
+        body,
+    })
 }
 
 /// A name that stands for two things.
@@ -190,17 +251,28 @@ pub(super) fn twice(name: &Name) -> Diagnostic {
 pub(super) fn check_name(name: &Name) -> Resolved<()> {
     if RESERVED.contains(&name.text.as_str()) {
         let message = format!("`{}` is a word of the language", name.text);
-        return Err(Diagnostic::new(name.location.clone(), message, "another name"));
+        return Err(Diagnostic::new(
+            name.location.clone(),
+            message,
+            "another name",
+        ));
     }
     Ok(())
 }
 
 /// The view of the model file.
 pub(super) fn view(context: Context) -> View<'static> {
-    View { scope: 0, context, arguments: &[] }
+    View {
+        scope: 0,
+        context,
+        arguments: &[],
+    }
 }
 
 /// The place of an item that is missing altogether: the start of the file.
 pub(super) fn beginning() -> Location {
-    Location { file: 0, range: 0..0 }
+    Location {
+        file: 0,
+        range: 0..0,
+    }
 }

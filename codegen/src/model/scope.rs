@@ -8,8 +8,9 @@ use num_traits::{One, ToPrimitive};
 use std::collections::HashMap;
 
 /// More expansions than any model needs: definitions that double at every step end here.
-const MOST_EXPANSIONS: usize = 20_000;
-const MOST_NODES: usize = 400_000;
+const MOST_EXPANSIONS: usize = 5_000;
+/// Terms handled while names are resolved.
+const MOST_WORK: usize = 300_000;
 /// Deeper than any definition needs.
 const DEEPEST_EXPRESSION: usize = 256;
 
@@ -50,6 +51,8 @@ pub(super) struct Names {
     /// Opaque laws of the model by name.
     pub laws: HashMap<String, usize>,
     pub used: Vec<bool>,
+    /// Mistakes beside the first of an expression.
+    pub further: Vec<Diagnostic>,
     pub periodic: String,
     pub coordinate: Option<String>,
     expanding: Vec<(usize, String)>,
@@ -77,6 +80,7 @@ impl Names {
             field_count: 0,
             laws: HashMap::new(),
             used: Vec::new(),
+            further: Vec::new(),
             periodic: "x".into(),
             coordinate: None,
             expanding: Vec::new(),
@@ -88,12 +92,19 @@ impl Names {
 
     /// The node of an expression of the model file.
     pub fn resolve(&mut self, expression: &Expression, context: Context) -> Resolved<Id> {
-        self.expression(expression, &View { scope: 0, context, arguments: &[] })
+        self.expression(
+            expression,
+            &View {
+                scope: 0,
+                context,
+                arguments: &[],
+            },
+        )
     }
 
     pub fn expression(&mut self, expression: &Expression, view: &View) -> Resolved<Id> {
         self.depth += 1;
-        let result = if self.depth > DEEPEST_EXPRESSION || self.graph.len() > MOST_NODES {
+        let result = if self.depth > DEEPEST_EXPRESSION || self.graph.work() > MOST_WORK {
             Err(Diagnostic::new(
                 expression.location.clone(),
                 "the expression is too large",
@@ -116,15 +127,17 @@ impl Names {
                 Ok(self.graph.neg(inner))
             }
             ExpressionKind::Binary(operator, left, right) => {
-                let a = self.expression(left, view)?;
-                let b = self.expression(right, view)?;
+                let (a, b) = (self.expression(left, view), self.expression(right, view));
+                let (a, b) = self.both(a, b)?;
                 match operator {
                     Binary::Add => Ok(self.graph.add(a, b)),
                     Binary::Subtract => Ok(self.graph.sub(a, b)),
                     Binary::Multiply => Ok(self.graph.mul(a, b)),
-                    Binary::Divide if self.graph.vanishes(b) => {
-                        Err(Diagnostic::new(right.location.clone(), "division by zero", "a nonzero divisor"))
-                    }
+                    Binary::Divide if self.graph.vanishes(b) => Err(Diagnostic::new(
+                        right.location.clone(),
+                        "division by zero",
+                        "a nonzero divisor",
+                    )),
                     Binary::Divide => Ok(self.graph.div(a, b)),
                     Binary::Power => self.power(a, b, right),
                 }
@@ -140,16 +153,36 @@ impl Names {
         }
     }
 
+    /// Both results, or the first mistake; a second one is kept for the report.
+    pub fn both(&mut self, a: Resolved<Id>, b: Resolved<Id>) -> Resolved<(Id, Id)> {
+        match (a, b) {
+            (Ok(a), Ok(b)) => Ok((a, b)),
+            (Err(first), Err(second)) => {
+                self.further.push(second);
+                Err(first)
+            }
+            (Err(mistake), Ok(_)) | (Ok(_), Err(mistake)) => Err(mistake),
+        }
+    }
+
     fn power(&mut self, base: Id, exponent: Id, written: &Expression) -> Resolved<Id> {
         if let Some(value) = self.graph.as_number(exponent).cloned() {
             let size = value.to_f64().unwrap_or(f64::INFINITY);
             if size.abs() > 100.0 {
                 let message = "the exponent is too large";
-                return Err(Diagnostic::new(written.location.clone(), message, "at most 100"));
+                return Err(Diagnostic::new(
+                    written.location.clone(),
+                    message,
+                    "at most 100",
+                ));
             }
             if self.graph.is_zero(base) && size <= 0.0 {
                 let message = "zero to a power that is not positive";
-                return Err(Diagnostic::new(written.location.clone(), message, "a positive exponent"));
+                return Err(Diagnostic::new(
+                    written.location.clone(),
+                    message,
+                    "a positive exponent",
+                ));
             }
             return Ok(self.graph.pow(base, value));
         }
@@ -184,24 +217,43 @@ impl Names {
     ) -> Resolved<(usize, Vec<usize>)> {
         let parameter = self.find_parameter(&switch.text, scope).ok_or_else(|| {
             let message = format!("`{}` is not a switch", switch.text);
-            Diagnostic::new(switch.location.clone(), message, "a parameter declared as `name = a in {a, b}`")
+            Diagnostic::new(
+                switch.location.clone(),
+                message,
+                "a parameter declared as `name = a in {a, b}`",
+            )
         })?;
         self.used[parameter] = true;
         let choices = self.parameters[parameter].choices.clone();
         if choices.is_empty() {
             let message = format!("`{}` is a number, not a switch", switch.text);
-            return Err(Diagnostic::new(switch.location.clone(), message, "a parameter declared as `name = a in {a, b}`"));
+            return Err(Diagnostic::new(
+                switch.location.clone(),
+                message,
+                "a parameter declared as `name = a in {a, b}`",
+            ));
         }
         for (i, (name, _)) in branches.iter().enumerate() {
             if !choices.contains(&name.text) {
                 let message = format!("`{}` has no choice `{}`", switch.text, name.text);
                 let near = nearest(&name.text, choices.iter().map(String::as_str));
-                return Err(Diagnostic::new(name.location.clone(), message, format!("one of {}", choices.join(", ")))
-                    .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
+                return Err(Diagnostic::new(
+                    name.location.clone(),
+                    message,
+                    format!("one of {}", choices.join(", ")),
+                )
+                .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
             }
-            if branches[..i].iter().any(|(other, _)| other.text == name.text) {
+            if branches[..i]
+                .iter()
+                .any(|(other, _)| other.text == name.text)
+            {
                 let message = format!("the choice `{}` stands twice", name.text);
-                return Err(Diagnostic::new(name.location.clone(), message, "each choice once"));
+                return Err(Diagnostic::new(
+                    name.location.clone(),
+                    message,
+                    "each choice once",
+                ));
             }
         }
         let mut order = Vec::with_capacity(choices.len());
@@ -210,7 +262,11 @@ impl Names {
                 Some(branch) => order.push(branch),
                 None => {
                     let message = format!("the choice `{choice}` of `{}` is missing", switch.text);
-                    return Err(Diagnostic::new(place.clone(), message, format!("a branch for each of {}", choices.join(", "))));
+                    return Err(Diagnostic::new(
+                        place.clone(),
+                        message,
+                        format!("a branch for each of {}", choices.join(", ")),
+                    ));
                 }
             }
         }
@@ -248,27 +304,44 @@ impl Names {
             self.used[parameter] = true;
             if !self.parameters[parameter].choices.is_empty() {
                 let message = format!("`{name}` is a switch, not a number");
-                return Err(Diagnostic::new(place.clone(), message, "`select` to choose by a switch"));
+                return Err(Diagnostic::new(
+                    place.clone(),
+                    message,
+                    "`select` to choose by a switch",
+                ));
             }
             return Ok(self.graph.parameter(parameter));
         }
         if let Some(definition) = self.scopes[view.scope].definitions.get(name).cloned() {
             if let Some(arguments) = &definition.arguments {
                 let message = format!("`{name}` takes {} argument(s)", arguments.len());
-                return Err(Diagnostic::new(place.clone(), message, format!("`{name}(…)`")));
+                return Err(Diagnostic::new(
+                    place.clone(),
+                    message,
+                    format!("`{name}(…)`"),
+                ));
             }
             return self.expand(view.scope, &definition, &[], place, view.context);
         }
         if let Some((_, law)) = self.scopes[view.scope].imports.get(name) {
             let message = format!("`{name}` is the law `{law}`, which takes arguments");
-            return Err(Diagnostic::new(place.clone(), message, format!("`{name}(…)`")));
+            return Err(Diagnostic::new(
+                place.clone(),
+                message,
+                format!("`{name}(…)`"),
+            ));
         }
         if name == "pi" {
             return Ok(self.graph.pi());
         }
         if name == self.periodic && view.scope == 0 {
-            let message = format!("`{name}` may not appear: models do not depend on the periodic coordinate");
-            return Err(Diagnostic::new(place.clone(), message, "a field, a parameter or a number"));
+            let message =
+                format!("`{name}` may not appear: models do not depend on the periodic coordinate");
+            return Err(Diagnostic::new(
+                place.clone(),
+                message,
+                "a field, a parameter or a number",
+            ));
         }
         Err(self.unknown(name, place, view))
     }
@@ -300,27 +373,50 @@ impl Names {
         }
         if word == "integral" {
             let message = "an integral is not part of a local expression";
-            return Err(Diagnostic::new(place.clone(), message, "an expression in the fields and their derivatives")
-                .hint("integrals stand in `base`, `mean`, `amplitude` and `outputs`"));
+            return Err(Diagnostic::new(
+                place.clone(),
+                message,
+                "an expression in the fields and their derivatives",
+            )
+            .hint("integrals stand in `base`, `mean`, `amplitude` and `outputs`"));
         }
         let found = match self.scopes[view.scope].definitions.get(word) {
             Some(definition) => Some((view.scope, definition.clone())),
-            None => self.scopes[view.scope].imports.get(word).cloned().and_then(|(scope, law)| {
-                self.scopes[scope].definitions.get(&law).cloned().map(|d| (scope, d))
-            }),
+            None => self.scopes[view.scope]
+                .imports
+                .get(word)
+                .cloned()
+                .and_then(|(scope, law)| {
+                    self.scopes[scope]
+                        .definitions
+                        .get(&law)
+                        .cloned()
+                        .map(|d| (scope, d))
+                }),
         };
         let Some((scope, definition)) = found else {
             if self.fields.contains_key(word) || self.find_parameter(word, view.scope).is_some() {
                 let message = format!("`{word}` is not a function");
-                return Err(Diagnostic::new(place.clone(), message, "an operator between the factors")
-                    .hint(format!("write a product as {word}*(…)")));
+                return Err(Diagnostic::new(
+                    place.clone(),
+                    message,
+                    "an operator between the factors",
+                )
+                .hint(format!("write a product as {word}*(…)")));
             }
             return Err(self.unknown(word, &name.location, view));
         };
         let expected = definition.arguments.as_deref().unwrap_or_default().len();
         if expected != arguments.len() {
-            let message = format!("`{word}` takes {expected} argument(s), {} given", arguments.len());
-            return Err(Diagnostic::new(place.clone(), message, format!("{expected} argument(s)")));
+            let message = format!(
+                "`{word}` takes {expected} argument(s), {} given",
+                arguments.len()
+            );
+            return Err(Diagnostic::new(
+                place.clone(),
+                message,
+                format!("{expected} argument(s)"),
+            ));
         }
         let mut values = Vec::with_capacity(arguments.len());
         for argument in arguments {
@@ -339,7 +435,11 @@ impl Names {
         match arguments {
             [argument] => self.expression(argument, view),
             _ => {
-                let message = format!("`{}` takes one argument, {} given", name.text, arguments.len());
+                let message = format!(
+                    "`{}` takes one argument, {} given",
+                    name.text,
+                    arguments.len()
+                );
                 Err(Diagnostic::new(place.clone(), message, "one argument"))
             }
         }
@@ -353,7 +453,11 @@ impl Names {
         let rest = word.strip_prefix("absd").map(|c| (c, true));
         let (coordinate, absolute) = rest.or_else(|| word.strip_prefix('d').map(|c| (c, false)))?;
         if coordinate == self.periodic {
-            return Some(if absolute { Operator::AbsDx } else { Operator::Dx });
+            return Some(if absolute {
+                Operator::AbsDx
+            } else {
+                Operator::Dx
+            });
         }
         (Some(coordinate) == self.coordinate.as_deref() && !absolute).then_some(Operator::Dy)
     }
@@ -375,7 +479,9 @@ impl Names {
                 .hint("put the derivative into a `let` of the model"));
         }
         if operator == Operator::Dt
-            && self.graph.any(argument, |n| matches!(n, Node::Derivative(Operator::Dt, _)))
+            && self
+                .graph
+                .any(argument, |n| matches!(n, Node::Derivative(Operator::Dt, _)))
         {
             return Err(Diagnostic::new(
                 name.location.clone(),
@@ -399,10 +505,17 @@ impl Names {
         let name = &definition.name.text;
         let key = (scope, name.clone());
         if let Some(start) = self.expanding.iter().position(|k| *k == key) {
-            let chain: Vec<_> = self.expanding[start..].iter().map(|(_, n)| n.as_str()).collect();
+            let chain: Vec<_> = self.expanding[start..]
+                .iter()
+                .map(|(_, n)| n.as_str())
+                .collect();
             let message = format!("`{name}` is defined by itself");
-            return Err(Diagnostic::new(definition.name.location.clone(), message, "a definition in other terms")
-                .hint(format!("{} → {name}", chain.join(" → "))));
+            return Err(Diagnostic::new(
+                definition.name.location.clone(),
+                message,
+                "a definition in other terms",
+            )
+            .hint(format!("{} → {name}", chain.join(" → "))));
         }
         let plain = values.is_empty() && context == Context::State;
         if plain && let Some(&known) = self.memo.get(&key) {
@@ -410,14 +523,27 @@ impl Names {
         }
         self.expansions += 1;
         if self.expansions > MOST_EXPANSIONS {
-            return Err(Diagnostic::new(place.clone(), "the definitions expand without end", "a smaller model"));
+            return Err(Diagnostic::new(
+                place.clone(),
+                "the definitions expand without end",
+                "a smaller model",
+            ));
         }
         let names = definition.arguments.as_deref().unwrap_or_default();
-        let arguments: Vec<_> =
-            names.iter().map(|n| n.text.clone()).zip(values.iter().copied()).collect();
+        let arguments: Vec<_> = names
+            .iter()
+            .map(|n| n.text.clone())
+            .zip(values.iter().copied())
+            .collect();
         self.expanding.push(key.clone());
-        let result =
-            self.expression(&definition.body, &View { scope, context, arguments: &arguments });
+        let result = self.expression(
+            &definition.body,
+            &View {
+                scope,
+                context,
+                arguments: &arguments,
+            },
+        );
         self.expanding.pop();
         if plain && let Ok(id) = result {
             self.memo.insert(key, id);
@@ -447,7 +573,9 @@ impl Names {
         let operators = [
             format!("d{}", self.periodic),
             format!("absd{}", self.periodic),
-            self.coordinate.as_ref().map_or(String::new(), |c| format!("d{c}")),
+            self.coordinate
+                .as_ref()
+                .map_or(String::new(), |c| format!("d{c}")),
         ];
         if view.scope == 0 {
             candidates.extend(self.fields.keys().map(String::as_str));
@@ -472,10 +600,21 @@ impl Names {
 
     /// The rational value of an expression in numbers alone.
     pub fn constant(&mut self, expression: &Expression) -> Resolved<f64> {
-        let id = self.expression(expression, &View { scope: 0, context: Context::Constant, arguments: &[] });
+        let id = self.expression(
+            expression,
+            &View {
+                scope: 0,
+                context: Context::Constant,
+                arguments: &[],
+            },
+        );
         let id = id?;
         self.numeric(id).filter(|v| v.is_finite()).ok_or_else(|| {
-            Diagnostic::new(expression.location.clone(), "this is not a number", "a number")
+            Diagnostic::new(
+                expression.location.clone(),
+                "this is not a number",
+                "a number",
+            )
         })
     }
 
@@ -484,9 +623,11 @@ impl Names {
         match self.graph.node(id) {
             Node::Number(value) => value.to_f64(),
             Node::Pi => Some(std::f64::consts::PI),
-            Node::Sum(constant, terms) => terms.iter().try_fold(constant.to_f64()?, |sum, (t, c)| {
-                Some(sum + self.numeric(*t)? * c.to_f64()?)
-            }),
+            Node::Sum(constant, terms) => {
+                terms.iter().try_fold(constant.to_f64()?, |sum, (t, c)| {
+                    Some(sum + self.numeric(*t)? * c.to_f64()?)
+                })
+            }
             Node::Product(factors) => factors.iter().try_fold(1.0, |product, (b, e)| {
                 Some(product * self.numeric(*b)?.powf(e.to_f64()?))
             }),
@@ -521,22 +662,42 @@ impl Names {
                     None => {
                         let message = format!("`{}` is not one of the choices", choice.text);
                         let near = nearest(&choice.text, choices.iter().map(String::as_str));
-                        return Err(Diagnostic::new(choice.location.clone(), message, format!("one of {}", choices.join(", ")))
-                            .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
+                        return Err(Diagnostic::new(
+                            choice.location.clone(),
+                            message,
+                            format!("one of {}", choices.join(", ")),
+                        )
+                        .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
                     }
                 }
             }
             None => {
                 let message = format!("the parameter `{}` has no default value", item.name.text);
-                return Err(Diagnostic::new(item.name.location.clone(), message, format!("`{} = value`", item.name.text)));
+                return Err(Diagnostic::new(
+                    item.name.location.clone(),
+                    message,
+                    format!("`{} = value`", item.name.text),
+                ));
             }
         };
         if !(lower..=upper).contains(&default) {
             let message = format!("the default {default} lies outside {lower}..{upper}");
-            return Err(Diagnostic::new(item.name.location.clone(), message, format!("a default in {lower}..{upper}")));
+            return Err(Diagnostic::new(
+                item.name.location.clone(),
+                message,
+                format!("a default in {lower}..{upper}"),
+            ));
         }
         let (name, doc) = (item.name.text.clone(), item.doc.clone());
-        Ok(Parameter { name, doc, default, lower, upper, choices, location: item.name.location.clone() })
+        Ok(Parameter {
+            name,
+            doc,
+            default,
+            lower,
+            upper,
+            choices,
+            location: item.name.location.clone(),
+        })
     }
 }
 
@@ -546,7 +707,11 @@ fn misplaced(place: &Location, name: &str, what: &str, context: Context) -> Diag
         Context::Amplitude => "parameters and k",
         _ => "parameters and numbers",
     };
-    Diagnostic::new(place.clone(), format!("`{name}` is {what}, which has no place here"), expected)
+    Diagnostic::new(
+        place.clone(),
+        format!("`{name}` is {what}, which has no place here"),
+        expected,
+    )
 }
 
 /// Whether a rational is two.

@@ -24,7 +24,11 @@ pub(super) fn model(
 ) -> Option<Model> {
     let Some(name) = &tree.name else {
         let message = "the model has no name";
-        mistakes.push(Diagnostic::new(beginning(), message, "`model name \"title\";`"));
+        mistakes.push(Diagnostic::new(
+            beginning(),
+            message,
+            "`model name \"title\";`",
+        ));
         return None;
     };
     coordinate_names(tree, names, mistakes);
@@ -38,24 +42,48 @@ pub(super) fn model(
         laws.extend(law(definition, laws.len(), names, mistakes));
     }
     let interval = interval(tree, names, mistakes);
-    let balances = tree.balances.iter().filter_map(|b| keep(balance(b, names), mistakes)).collect();
+    let balances = tree
+        .balances
+        .iter()
+        .filter_map(|b| keep(balance(b, names), mistakes))
+        .collect();
     let ends = interval.as_ref().map(|i| (i.lower, i.upper));
     let base = base(&tree.base, fields.len(), ends, names, mistakes);
     let mut boundary = Vec::new();
     for wall in &tree.boundary {
         wall_conditions(wall, ends, names, mistakes, &mut boundary);
     }
-    let mean = tree.mean.iter().filter_map(|m| keep(mean(m, names), mistakes)).collect();
+    let mean = tree
+        .mean
+        .iter()
+        .filter_map(|m| keep(mean(m, names), mistakes))
+        .collect();
     let amplitude = keep(amplitude(tree.amplitude.as_ref(), &fields, names), mistakes);
-    let outputs = tree.outputs.iter().filter_map(|o| keep(output(o, names), mistakes)).collect();
-    for item in &names.scopes[0].definitions.values().cloned().collect::<Vec<_>>() {
+    let outputs = tree
+        .outputs
+        .iter()
+        .filter_map(|o| keep(output(o, names), mistakes))
+        .collect();
+    for item in &names.scopes[0]
+        .definitions
+        .values()
+        .cloned()
+        .collect::<Vec<_>>()
+    {
         check_definition(item, names, mistakes);
     }
+    mistakes.append(&mut names.further);
+    // What a broken statement would have used is not known.
+    let whole = mistakes.is_empty();
     for (parameter, used) in names.parameters.iter().zip(&names.used) {
-        if !used {
+        if whole && !used {
             let message = format!("the parameter `{}` is never used", parameter.name);
             let expected = "a parameter that some expression uses";
-            mistakes.push(Diagnostic::new(parameter.location.clone(), message, expected));
+            mistakes.push(Diagnostic::new(
+                parameter.location.clone(),
+                message,
+                expected,
+            ));
         }
     }
     Some(Model {
@@ -98,20 +126,36 @@ fn coordinate_names(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diag
     }
     if let Some(second) = bounded.get(1) {
         let message = "there are two cross-stream coordinates";
-        mistakes.push(Diagnostic::new(second.name.location.clone(), message, "at most one"));
+        mistakes.push(Diagnostic::new(
+            second.name.location.clone(),
+            message,
+            "at most one",
+        ));
     }
 }
 
-fn interval(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) -> Option<Interval> {
+fn interval(
+    tree: &ModelTree,
+    names: &mut Names,
+    mistakes: &mut Vec<Diagnostic>,
+) -> Option<Interval> {
     let item = tree.coordinates.iter().find(|c| c.interval.is_some())?;
     let (lower, upper) = item.interval.as_ref()?;
     let lower = keep(names.resolve(lower, Context::Constant), mistakes)?;
     let upper = keep(names.resolve(upper, Context::Constant), mistakes)?;
     if lower == upper {
         let message = "the interval is empty";
-        mistakes.push(Diagnostic::new(item.name.location.clone(), message, "two different ends"));
+        mistakes.push(Diagnostic::new(
+            item.name.location.clone(),
+            message,
+            "two different ends",
+        ));
     }
-    Some(Interval { name: item.name.text.clone(), lower, upper })
+    Some(Interval {
+        name: item.name.text.clone(),
+        lower,
+        upper,
+    })
 }
 
 fn parameters(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
@@ -134,7 +178,10 @@ fn fields(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) -
         MeanItem::Unknown(name, _) => Some((name, true, None, String::new())),
         _ => None,
     });
-    let profiles = tree.fields.iter().map(|f| (&f.name, false, f.range.as_ref(), f.doc.clone()));
+    let profiles = tree
+        .fields
+        .iter()
+        .map(|f| (&f.name, false, f.range.as_ref(), f.doc.clone()));
     for (name, uniform, range, doc) in profiles.chain(unknowns) {
         keep(check_name(name), mistakes);
         let taken = names.parameters.iter().any(|p| p.name == name.text)
@@ -156,12 +203,23 @@ fn fields(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) -
         }
         names.fields.insert(name.text.clone(), fields.len());
         let location = name.location.clone();
-        fields.push(Field { name: name.text.clone(), doc, lower, upper, uniform, location });
+        fields.push(Field {
+            name: name.text.clone(),
+            doc,
+            lower,
+            upper,
+            uniform,
+            location,
+        });
     }
     names.field_count = fields.len();
     if fields.is_empty() || fields.len() > MOST_FIELDS {
         let message = format!("the model has {} fields", fields.len());
-        mistakes.push(Diagnostic::new(beginning(), message, "1 to 14 fields: `fields { u; v; }`"));
+        mistakes.push(Diagnostic::new(
+            beginning(),
+            message,
+            "1 to 14 fields: `fields { u; v; }`",
+        ));
     }
     fields
 }
@@ -172,7 +230,9 @@ fn declare(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagno
     let taken = names.fields.contains_key(text)
         || names.parameters.iter().any(|p| &p.name == text)
         || names.operator(text).is_some();
-    let previous = names.scopes[0].definitions.insert(text.clone(), definition.clone());
+    let previous = names.scopes[0]
+        .definitions
+        .insert(text.clone(), definition.clone());
     if taken || previous.is_some() {
         mistakes.push(twice(&definition.name));
     }
@@ -202,7 +262,11 @@ fn law(
     let body = keep(names.resolve(&definition.body, Context::Law), mistakes);
     let body = body.unwrap_or_else(|| names.graph.zero());
     names.laws.insert(text.clone(), index);
-    Some(Law { name: text, doc: definition.doc.clone(), body })
+    Some(Law {
+        name: text,
+        doc: definition.doc.clone(),
+        body,
+    })
 }
 
 /// Definitions that no balance uses are read too, so that their mistakes show.
@@ -214,12 +278,16 @@ fn check_definition(definition: &Definition, names: &mut Names, mistakes: &mut V
     }
     let place = definition.name.location.clone();
     // Nonlinear operators may reject the stand-in argument; names and arities are what counts here.
-    keep(names.expand(0, definition, &values, &place, Context::State), mistakes);
+    keep(
+        names.expand(0, definition, &values, &place, Context::State),
+        mistakes,
+    );
 }
 
 fn difference(equation: &Equation, names: &mut Names) -> Resolved<Id> {
-    let left = names.resolve(&equation.left, Context::State)?;
-    let right = names.resolve(&equation.right, Context::State)?;
+    let left = names.resolve(&equation.left, Context::State);
+    let right = names.resolve(&equation.right, Context::State);
+    let (left, right) = names.both(left, right)?;
     Ok(names.graph.sub(left, right))
 }
 
@@ -229,8 +297,12 @@ fn field_index(name: &Name, names: &Names) -> Resolved<usize> {
         fields.sort_unstable();
         let near = nearest(&name.text, fields.iter().copied());
         let message = format!("`{}` is not a field", name.text);
-        Diagnostic::new(name.location.clone(), message, format!("one of {}", fields.join(", ")))
-            .maybe_hint(near.map(|n| format!("did you mean `{n}`?")))
+        Diagnostic::new(
+            name.location.clone(),
+            message,
+            format!("one of {}", fields.join(", ")),
+        )
+        .maybe_hint(near.map(|n| format!("did you mean `{n}`?")))
     })
 }
 
@@ -245,8 +317,18 @@ fn balance(item: &BalanceItem, names: &mut Names) -> Resolved<Balance> {
         None => None,
     };
     let (name, doc) = (item.name.text.clone(), item.doc.clone());
-    let location = Location { file: 0, range: item.name.location.range.clone() };
-    Ok(Balance { name, doc, residual, divisor, paired_field, location })
+    let location = Location {
+        file: 0,
+        range: item.name.location.range.clone(),
+    };
+    Ok(Balance {
+        name,
+        doc,
+        residual,
+        divisor,
+        paired_field,
+        location,
+    })
 }
 
 fn base(
@@ -259,7 +341,9 @@ fn base(
     let profiles = |items: &[(Name, Expression)], names: &mut Names, mistakes: &mut Vec<_>| {
         let mut found = vec![None; fields];
         for (name, expression) in items {
-            let Some(field) = keep(field_index(name, names), mistakes) else { continue };
+            let Some(field) = keep(field_index(name, names), mistakes) else {
+                continue;
+            };
             if found[field].is_some() {
                 mistakes.push(twice(name));
             }
@@ -273,38 +357,68 @@ fn base(
     for wall in &block.walls {
         wall_conditions(wall, ends, names, mistakes, &mut conditions);
     }
-    let integrals =
-        block.integrals.iter().filter_map(|i| keep(integral(i, names), mistakes)).collect();
+    let integrals = block
+        .integrals
+        .iter()
+        .filter_map(|i| keep(integral(i, names), mistakes))
+        .collect();
     let mut automatic = Vec::new();
     for item in &block.automatic {
         let condition = (|| {
-            let parameter = names.find_parameter(&item.parameter.text, 0).ok_or_else(|| {
-                let message = format!("`{}` is not a parameter", item.parameter.text);
-                Diagnostic::new(item.parameter.location.clone(), message, "the name of a parameter")
-            })?;
+            let parameter = names
+                .find_parameter(&item.parameter.text, 0)
+                .ok_or_else(|| {
+                    let message = format!("`{}` is not a parameter", item.parameter.text);
+                    Diagnostic::new(
+                        item.parameter.location.clone(),
+                        message,
+                        "the name of a parameter",
+                    )
+                })?;
             let end = end(&item.place, ends, names)?;
             let residual = difference(&item.equation, names)?;
             let location = item.equation.location.clone();
-            Ok((parameter, Condition { end, residual, guard: Vec::new(), location }))
+            Ok((
+                parameter,
+                Condition {
+                    end,
+                    residual,
+                    guard: Vec::new(),
+                    location,
+                },
+            ))
         })();
         automatic.extend(keep(condition, mistakes));
     }
     let location = block.location.clone().unwrap_or_else(beginning);
-    Base { closed, guesses, conditions, integrals, automatic, location }
+    Base {
+        closed,
+        guesses,
+        conditions,
+        integrals,
+        automatic,
+        location,
+    }
 }
 
 fn integral(item: &IntegralCondition, names: &mut Names) -> Resolved<Integral> {
     let integrand = names.resolve(&item.integrand, Context::State)?;
     let value = names.resolve(&item.value, Context::Constant)?;
-    Ok(Integral { integrand, value, location: item.location.clone() })
+    Ok(Integral {
+        integrand,
+        value,
+        location: item.location.clone(),
+    })
 }
 
 /// The end of the interval that `place` names.
 fn end(place: &Expression, ends: Option<(Id, Id)>, names: &mut Names) -> Resolved<End> {
     let Some((lower, upper)) = ends else {
         let message = "the model has no cross-stream coordinate";
-        return Err(Diagnostic::new(place.location.clone(), message, "no conditions at walls")
-            .hint("declare one: `coordinates { x: periodic; y: 0..H; }`"));
+        return Err(
+            Diagnostic::new(place.location.clone(), message, "no conditions at walls")
+                .hint("declare one: `coordinates { x: periodic; y: 0..H; }`"),
+        );
     };
     let id = names.resolve(place, Context::Constant)?;
     if id == lower {
@@ -313,7 +427,11 @@ fn end(place: &Expression, ends: Option<(Id, Id)>, names: &mut Names) -> Resolve
         Ok(End::Upper)
     } else {
         let message = "this is not an end of the interval";
-        Err(Diagnostic::new(place.location.clone(), message, "an end as `coordinates` gives it"))
+        Err(Diagnostic::new(
+            place.location.clone(),
+            message,
+            "an end as `coordinates` gives it",
+        ))
     }
 }
 
@@ -324,8 +442,15 @@ fn wall_conditions(
     mistakes: &mut Vec<Diagnostic>,
     found: &mut Vec<Condition>,
 ) {
-    if let Some(expected) = names.coordinate.clone().filter(|c| *c != wall.coordinate.text) {
-        let message = format!("`{}` is not the cross-stream coordinate", wall.coordinate.text);
+    if let Some(expected) = names
+        .coordinate
+        .clone()
+        .filter(|c| *c != wall.coordinate.text)
+    {
+        let message = format!(
+            "`{}` is not the cross-stream coordinate",
+            wall.coordinate.text
+        );
         let place = wall.coordinate.location.clone();
         mistakes.push(Diagnostic::new(place, message, format!("`{expected}`")));
         return;
@@ -346,19 +471,35 @@ fn conditions(
     for item in items {
         match item {
             ConditionItem::Equation(equation) => {
-                let Some(residual) = keep(difference(equation, names), mistakes) else { continue };
+                let Some(residual) = keep(difference(equation, names), mistakes) else {
+                    continue;
+                };
                 let location = equation.location.clone();
-                if names.graph.any(residual, |n| matches!(n, Node::Derivative(Operator::Dt, _))) {
+                if names
+                    .graph
+                    .any(residual, |n| matches!(n, Node::Derivative(Operator::Dt, _)))
+                {
                     let message = "`dt` has no place in a boundary condition";
-                    mistakes.push(Diagnostic::new(location, message, "a condition without `dt`"));
+                    mistakes.push(Diagnostic::new(
+                        location,
+                        message,
+                        "a condition without `dt`",
+                    ));
                     continue;
                 }
-                found.push(Condition { end, residual, guard: guard.to_vec(), location });
+                found.push(Condition {
+                    end,
+                    residual,
+                    guard: guard.to_vec(),
+                    location,
+                });
             }
             ConditionItem::Select(switch, branches) => {
                 let place = switch.location.clone();
                 let resolved = names.branches(switch, branches, 0, &place);
-                let Some((parameter, order)) = keep(resolved, mistakes) else { continue };
+                let Some((parameter, order)) = keep(resolved, mistakes) else {
+                    continue;
+                };
                 for (choice, branch) in order.into_iter().enumerate() {
                     let mut guard = guard.to_vec();
                     guard.push((parameter, choice));
@@ -375,9 +516,10 @@ fn mean(item: &MeanItem, names: &mut Names) -> Resolved<Closure> {
             location: integrand.location.clone(),
             integrand: names.resolve(integrand, Context::State)?,
         },
-        MeanItem::Gauge(name) => {
-            Closure::Gauge { field: field_index(name, names)?, location: name.location.clone() }
-        }
+        MeanItem::Gauge(name) => Closure::Gauge {
+            field: field_index(name, names)?,
+            location: name.location.clone(),
+        },
         MeanItem::Unknown(name, condition) => Closure::Unknown {
             field: field_index(name, names)?,
             integral: integral(condition, names)?,
@@ -395,7 +537,10 @@ fn amplitude(
         None => {
             let one = names.graph.one();
             let profiles = (0..fields.len()).filter(|&f| !fields[f].uniform);
-            Ok(Amplitude::Integral { weights: profiles.map(|f| (f, one)).collect(), value: one })
+            Ok(Amplitude::Integral {
+                weights: profiles.map(|f| (f, one)).collect(),
+                value: one,
+            })
         }
         Some(AmplitudeItem::Integral { integrand, value }) => {
             let mut weights = Vec::new();
@@ -403,14 +548,22 @@ fn amplitude(
             let value = names.resolve(value, Context::Amplitude)?;
             Ok(Amplitude::Integral { weights, value })
         }
-        Some(AmplitudeItem::Point { place, field, value }) => {
+        Some(AmplitudeItem::Point {
+            place,
+            field,
+            value,
+        }) => {
             let place = match place {
                 Some(place) => Some(names.resolve(place, Context::Constant)?),
                 None => None,
             };
             let field = modulus_of(field, names)?;
             let value = names.resolve(value, Context::Amplitude)?;
-            Ok(Amplitude::Point { field, place, value })
+            Ok(Amplitude::Point {
+                field,
+                place,
+                value,
+            })
         }
     }
 }
@@ -428,7 +581,11 @@ fn quadratic(
             quadratic(right, weight, names, found)
         }
         ExpressionKind::Binary(Binary::Multiply, left, right) => {
-            let (factor, square) = if contains_modulus(right) { (left, right) } else { (right, left) };
+            let (factor, square) = if contains_modulus(right) {
+                (left, right)
+            } else {
+                (right, left)
+            };
             let factor = names.expression(factor, &view(Context::Profile))?;
             let weight = match weight {
                 Some(weight) => names.graph.mul(weight, factor),
@@ -436,8 +593,7 @@ fn quadratic(
             };
             quadratic(square, Some(weight), names, found)
         }
-        ExpressionKind::Binary(Binary::Power, base, exponent)
-            if matches!(&exponent.kind, ExpressionKind::Number(two) if is_two(two)) =>
+        ExpressionKind::Binary(Binary::Power, base, exponent) if matches!(&exponent.kind, ExpressionKind::Number(two) if is_two(two)) =>
         {
             let field = modulus_of(base, names)?;
             let one = names.graph.one();
@@ -465,7 +621,10 @@ fn modulus_of(expression: &Expression, names: &mut Names) -> Resolved<usize> {
     match &expression.kind {
         ExpressionKind::Modulus(inner) => modulus_of(inner, names),
         ExpressionKind::Name(text) => {
-            let name = Name { text: text.clone(), location: expression.location.clone() };
+            let name = Name {
+                text: text.clone(),
+                location: expression.location.clone(),
+            };
             field_index(&name, names)
         }
         _ => Err(Diagnostic::new(
@@ -482,5 +641,10 @@ fn output(item: &OutputItem, names: &mut Names) -> Resolved<Output> {
         None => None,
     };
     let body = names.resolve(&item.body, Context::State)?;
-    Ok(Output { name: item.name.text.clone(), doc: item.doc.clone(), place, body })
+    Ok(Output {
+        name: item.name.text.clone(),
+        doc: item.doc.clone(),
+        place,
+        body,
+    })
 }

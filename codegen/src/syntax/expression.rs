@@ -60,7 +60,10 @@ impl Reader {
         for (negative, place) in signs.into_iter().rev() {
             if negative {
                 let location = spaced(&place, &value.location);
-                value = Expression { kind: ExpressionKind::Negative(Box::new(value)), location };
+                value = Expression {
+                    kind: ExpressionKind::Negative(Box::new(value)),
+                    location,
+                };
             }
         }
         Ok(value)
@@ -78,7 +81,10 @@ impl Reader {
             self.skip(input);
             let inner = self.power(input)?;
             let location = spaced(&place, &inner.location);
-            Expression { kind: ExpressionKind::Negative(Box::new(inner)), location }
+            Expression {
+                kind: ExpressionKind::Negative(Box::new(inner)),
+                location,
+            }
         } else {
             self.power(input)?
         };
@@ -91,7 +97,10 @@ impl Reader {
             let content = self.parenthesised(input)?;
             let inner = self.expression(&content)?;
             self.finished(&content, "an operator or `)`")?;
-            return Ok(Expression { kind: inner.kind, location });
+            return Ok(Expression {
+                kind: inner.kind,
+                location,
+            });
         }
         if input.peek(Token![|]) {
             self.skip(input);
@@ -99,7 +108,10 @@ impl Reader {
             let end = self.here(input);
             self.punctuation(input, "|")?;
             let location = spaced(&location, &end);
-            return Ok(Expression { kind: ExpressionKind::Modulus(Box::new(inner)), location });
+            return Ok(Expression {
+                kind: ExpressionKind::Modulus(Box::new(inner)),
+                location,
+            });
         }
         if input.peek(syn::Lit) {
             return self.number(input);
@@ -112,7 +124,10 @@ impl Reader {
             return self.select(input, location);
         }
         if !input.peek(syn::token::Paren) {
-            return Ok(Expression { kind: ExpressionKind::Name(name.text), location });
+            return Ok(Expression {
+                kind: ExpressionKind::Name(name.text),
+                location,
+            });
         }
         let end = self.here(input);
         let content = self.parenthesised(input)?;
@@ -125,7 +140,10 @@ impl Reader {
             self.punctuation(&content, ",")?;
         }
         let location = spaced(&location, &end);
-        Ok(Expression { kind: ExpressionKind::Call(name, arguments), location })
+        Ok(Expression {
+            kind: ExpressionKind::Call(name, arguments),
+            location,
+        })
     }
 
     fn select(&self, input: ParseStream, start: Location) -> Parsed<Expression> {
@@ -142,7 +160,10 @@ impl Reader {
             }
         }
         let kind = ExpressionKind::Select(switch, branches);
-        Ok(Expression { kind, location: spaced(&start, &end) })
+        Ok(Expression {
+            kind,
+            location: spaced(&start, &end),
+        })
     }
 
     fn number(&self, input: ParseStream) -> Parsed<Expression> {
@@ -153,7 +174,11 @@ impl Reader {
             syn::Lit::Float(l) => (l.base10_digits().to_owned(), l.suffix().to_owned()),
             _ => {
                 let message = "this is not a number";
-                return Err(Diagnostic::new(location, message, "a number, a name or `(`"));
+                return Err(Diagnostic::new(
+                    location,
+                    message,
+                    "a number, a name or `(`",
+                ));
             }
         };
         if !suffix.is_empty() {
@@ -162,10 +187,17 @@ impl Reader {
                 .hint(format!("write a product as {digits}*{suffix}")));
         }
         match decimal(&digits) {
-            Some(value) => Ok(Expression { kind: ExpressionKind::Number(value), location }),
+            Some(value) => Ok(Expression {
+                kind: ExpressionKind::Number(value),
+                location,
+            }),
             None => {
                 let message = format!("`{digits}` is out of range");
-                Err(Diagnostic::new(location, message, "a decimal exponent of at most 400"))
+                Err(Diagnostic::new(
+                    location,
+                    message,
+                    "a decimal exponent of at most 400",
+                ))
             }
         }
     }

@@ -7,8 +7,18 @@ use syn::Token;
 use syn::parse::ParseStream;
 
 const MODEL_ITEMS: [&str; 12] = [
-    "model", "use", "coordinates", "parameters", "fields", "let", "law", "balance", "base",
-    "boundary", "amplitude", "outputs",
+    "model",
+    "use",
+    "coordinates",
+    "parameters",
+    "fields",
+    "let",
+    "law",
+    "balance",
+    "base",
+    "boundary",
+    "amplitude",
+    "outputs",
 ];
 const MEAN: &str = "mean";
 const LAW_ITEMS: [&str; 4] = ["use", "parameters", "let", "law"];
@@ -30,30 +40,41 @@ impl Reader {
             }
             "use" => self.import(input).map(|import| tree.imports.push(import)),
             "coordinates" => self.block(input, |input| {
-                self.coordinate(input).map(|item| tree.coordinates.push(item))
+                self.coordinate(input)
+                    .map(|item| tree.coordinates.push(item))
             }),
-            "parameters" => self
-                .block(input, |input| self.parameter(input).map(|item| tree.parameters.push(item))),
-            "fields" => self.block(input, |input| self.field(input).map(|i| tree.fields.push(i))),
-            "let" => self.definition(input, false).map(|item| tree.definitions.push(item)),
-            "law" => self.definition(input, true).map(|item| tree.definitions.push(item)),
-            "balance" => self
-                .block(input, |input| self.balance(input).map(|item| tree.balances.push(item))),
+            "parameters" => self.block(input, |input| {
+                self.parameter(input).map(|item| tree.parameters.push(item))
+            }),
+            "fields" => self.block(input, |input| {
+                self.field(input).map(|i| tree.fields.push(i))
+            }),
+            "let" => self
+                .definition(input, false)
+                .map(|item| tree.definitions.push(item)),
+            "law" => self
+                .definition(input, true)
+                .map(|item| tree.definitions.push(item)),
+            "balance" => self.block(input, |input| {
+                self.balance(input).map(|item| tree.balances.push(item))
+            }),
             "base" => {
                 tree.base.location = Some(keyword.location);
                 self.block(input, |input| self.base_item(input, &mut tree.base))
             }
-            "boundary" => {
-                self.block(input, |input| self.wall(input).map(|item| tree.boundary.push(item)))
-            }
-            MEAN => self.block(input, |input| self.mean(input).map(|item| tree.mean.push(item))),
+            "boundary" => self.block(input, |input| {
+                self.wall(input).map(|item| tree.boundary.push(item))
+            }),
+            MEAN => self.block(input, |input| {
+                self.mean(input).map(|item| tree.mean.push(item))
+            }),
             "amplitude" => self.block(input, |input| {
                 tree.amplitude = Some(self.amplitude(input)?);
                 Ok(())
             }),
-            "outputs" => {
-                self.block(input, |input| self.output(input).map(|item| tree.outputs.push(item)))
-            }
+            "outputs" => self.block(input, |input| {
+                self.output(input).map(|item| tree.outputs.push(item))
+            }),
             other => {
                 let mut items = MODEL_ITEMS.to_vec();
                 items.push(MEAN);
@@ -71,8 +92,12 @@ impl Reader {
                 "parameters" => self.block(input, |input| {
                     self.parameter(input).map(|item| tree.parameters.push(item))
                 }),
-                "let" => self.definition(input, false).map(|item| tree.definitions.push(item)),
-                "law" => self.definition(input, true).map(|item| tree.definitions.push(item)),
+                "let" => self
+                    .definition(input, false)
+                    .map(|item| tree.definitions.push(item)),
+                "law" => self
+                    .definition(input, true)
+                    .map(|item| tree.definitions.push(item)),
                 other => Err(unknown_item(&keyword.location, other, &LAW_ITEMS)),
             }
         });
@@ -100,7 +125,11 @@ impl Reader {
             } else {
                 law.clone()
             };
-            items.push(ImportItem { law, arguments, alias });
+            items.push(ImportItem {
+                law,
+                arguments,
+                alias,
+            });
             if !content.is_empty() {
                 self.punctuation(&content, ",")?;
             }
@@ -168,25 +197,43 @@ impl Reader {
         self.punctuation(input, ";")?;
         let default = match (default, &domain) {
             (Some(value), ParameterDomain::Choices(_)) => match value.kind {
-                ExpressionKind::Name(text) => {
-                    Some(ParameterDefault::Choice(Name { text, location: value.location }))
-                }
+                ExpressionKind::Name(text) => Some(ParameterDefault::Choice(Name {
+                    text,
+                    location: value.location,
+                })),
                 _ => {
                     let message = "the default of a switch is one of its choices";
-                    return Err(Diagnostic::new(value.location, message, "the name of a choice"));
+                    return Err(Diagnostic::new(
+                        value.location,
+                        message,
+                        "the name of a choice",
+                    ));
                 }
             },
             (value, _) => value.map(ParameterDefault::Value),
         };
-        Ok(ParameterItem { name, default, domain, doc })
+        Ok(ParameterItem {
+            name,
+            default,
+            domain,
+            doc,
+        })
     }
 
     /// `lower..upper`, either end open.
     fn range(&self, input: ParseStream) -> Parsed<(Option<Expression>, Option<Expression>)> {
         let ends = |input: ParseStream| input.peek(Token![;]) || input.peek(syn::LitStr);
-        let lower = if input.peek(Token![..]) { None } else { Some(self.expression(input)?) };
+        let lower = if input.peek(Token![..]) {
+            None
+        } else {
+            Some(self.expression(input)?)
+        };
         self.punctuation(input, "..")?;
-        let upper = if ends(input) { None } else { Some(self.expression(input)?) };
+        let upper = if ends(input) {
+            None
+        } else {
+            Some(self.expression(input)?)
+        };
         Ok((lower, upper))
     }
 
@@ -219,7 +266,13 @@ impl Reader {
         self.punctuation(input, "=")?;
         let body = self.expression(input)?;
         self.end_of_statement(input)?;
-        Ok(Definition { name, arguments, body, is_law, doc })
+        Ok(Definition {
+            name,
+            arguments,
+            body,
+            is_law,
+            doc,
+        })
     }
 
     /// `name: left = right divide by q for field "doc";`
@@ -242,7 +295,13 @@ impl Reader {
         }
         let doc = self.doc(input);
         self.end_of_statement(input)?;
-        Ok(BalanceItem { name, equation, divide_by, paired_field, doc })
+        Ok(BalanceItem {
+            name,
+            equation,
+            divide_by,
+            paired_field,
+            doc,
+        })
     }
 
     fn end_of_statement(&self, input: ParseStream) -> Parsed<()> {
@@ -257,12 +316,20 @@ impl Reader {
         let left = self.expression(input)?;
         if input.peek(Token![==]) {
             let location = self.here(input);
-            return Err(Diagnostic::new(location, "`==` is not part of the language", "`=`"));
+            return Err(Diagnostic::new(
+                location,
+                "`==` is not part of the language",
+                "`=`",
+            ));
         }
         self.punctuation(input, "=")?;
         let right = self.expression(input)?;
         let location = spaced(&left.location, &right.location);
-        Ok(Equation { left, right, location })
+        Ok(Equation {
+            left,
+            right,
+            location,
+        })
     }
 
     fn base_item(&self, input: ParseStream, base: &mut BaseBlock) -> Parsed<()> {
@@ -270,7 +337,9 @@ impl Reader {
             return self.wall(input).map(|wall| base.walls.push(wall));
         }
         if self.peek_word(input, "integral") {
-            return self.integral_condition(input).map(|item| base.integrals.push(item));
+            return self
+                .integral_condition(input)
+                .map(|item| base.integrals.push(item));
         }
         if self.peek_word(input, "guess") {
             self.skip(input);
@@ -314,8 +383,14 @@ impl Reader {
     fn wall(&self, input: ParseStream) -> Parsed<WallItem> {
         let (coordinate, place) = self.place(input)?;
         let mut conditions = Vec::new();
-        self.block(input, |input| self.condition(input).map(|item| conditions.push(item)))?;
-        Ok(WallItem { coordinate, place, conditions })
+        self.block(input, |input| {
+            self.condition(input).map(|item| conditions.push(item))
+        })?;
+        Ok(WallItem {
+            coordinate,
+            place,
+            conditions,
+        })
     }
 
     fn condition(&self, input: ParseStream) -> Parsed<ConditionItem> {
@@ -330,7 +405,9 @@ impl Reader {
         self.block(input, |input| {
             let choice = self.name(input, "a choice of the switch")?;
             let mut conditions = Vec::new();
-            self.block(input, |input| self.condition(input).map(|item| conditions.push(item)))?;
+            self.block(input, |input| {
+                self.condition(input).map(|item| conditions.push(item))
+            })?;
             branches.push((choice, conditions));
             Ok(())
         })?;
@@ -344,7 +421,11 @@ impl Reader {
         let value = self.expression(input)?;
         let location = spaced(&start, &value.location);
         self.end_of_statement(input)?;
-        Ok(IntegralCondition { integrand, value, location })
+        Ok(IntegralCondition {
+            integrand,
+            value,
+            location,
+        })
     }
 
     /// `integral(integrand)`
@@ -374,7 +455,11 @@ impl Reader {
                 self.punctuation(input, ":")?;
                 Ok(MeanItem::Unknown(name, self.integral_condition(input)?))
             }
-            other => Err(unknown_item(&keyword.location, other, &["conserved", "gauge", "unknown"])),
+            other => Err(unknown_item(
+                &keyword.location,
+                other,
+                &["conserved", "gauge", "unknown"],
+            )),
         }
     }
 
@@ -387,14 +472,30 @@ impl Reader {
         if self.peek_word(input, "at") {
             let (_, place) = self.place(input)?;
             let content = self.braced(input)?;
-            let Equation { left: field, right: value, .. } = self.equation(&content)?;
+            let Equation {
+                left: field,
+                right: value,
+                ..
+            } = self.equation(&content)?;
             self.end_of_statement(&content)?;
             self.finished(&content, "`}`")?;
-            return Ok(AmplitudeItem::Point { place: Some(place), field, value });
+            return Ok(AmplitudeItem::Point {
+                place: Some(place),
+                field,
+                value,
+            });
         }
-        let Equation { left: field, right: value, .. } = self.equation(input)?;
+        let Equation {
+            left: field,
+            right: value,
+            ..
+        } = self.equation(input)?;
         self.end_of_statement(input)?;
-        Ok(AmplitudeItem::Point { place: None, field, value })
+        Ok(AmplitudeItem::Point {
+            place: None,
+            field,
+            value,
+        })
     }
 
     /// `name "doc" = integral(q);` or `name = at y = place: q;` or `name = q;`
@@ -412,7 +513,12 @@ impl Reader {
             (None, self.expression(input)?)
         };
         self.end_of_statement(input)?;
-        Ok(OutputItem { name, place, body, doc })
+        Ok(OutputItem {
+            name,
+            place,
+            body,
+            doc,
+        })
     }
 }
 

@@ -13,11 +13,20 @@ const LARGEST_FILE: usize = 1 << 20;
 /// Characters that people write in formulas and Rust's lexer does not know.
 const FOREIGN: [(char, &str); 12] = [
     ('∂', "write derivatives as dx(q), dy(q), dt(q)"),
-    ('∇', "write the components with dx(q) and dy(q), for instance in a `let`"),
-    ('′', "write a y-derivative as dy(q); a perturbation needs no mark"),
+    (
+        '∇',
+        "write the components with dx(q) and dy(q), for instance in a `let`",
+    ),
+    (
+        '′',
+        "write a y-derivative as dy(q); a perturbation needs no mark",
+    ),
     ('²', "write a power as q^2"),
     ('³', "write a power as q^3"),
-    ('⁰', "base-state values need no mark: the generator expands around them"),
+    (
+        '⁰',
+        "base-state values need no mark: the generator expands around them",
+    ),
     ('·', "write a product with *"),
     ('×', "write a product with *"),
     ('−', "write a minus with the ASCII hyphen -"),
@@ -28,7 +37,10 @@ const FOREIGN: [(char, &str); 12] = [
 
 /// Mistakes that make the text unfit for lexing.
 pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
-    let at = |start: usize, len: usize| Location { file, range: start..start + len };
+    let at = |start: usize, len: usize| Location {
+        file,
+        range: start..start + len,
+    };
     if text.len() > LARGEST_FILE {
         let message = format!("the file has {} bytes", text.len());
         return vec![Diagnostic::new(at(0, 0), message, "at most 1 MiB")];
@@ -51,7 +63,11 @@ pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
                 });
                 if !closed {
                     let message = "this comment is never closed";
-                    found.push(Diagnostic::new(at(position, 2), message, "`*/` further down"));
+                    found.push(Diagnostic::new(
+                        at(position, 2),
+                        message,
+                        "`*/` further down",
+                    ));
                 }
             }
             '"' => {
@@ -82,7 +98,8 @@ pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
                 Some((_, opening)) if closing(opening) == character => {}
                 Some((start, opening)) => {
                     let message = format!("`{opening}` is closed by `{character}`");
-                    let expected = format!("`{}`, for the `{opening}` opened before", closing(opening));
+                    let expected =
+                        format!("`{}`, for the `{opening}` opened before", closing(opening));
                     let line = text[..start].matches('\n').count() + 1;
                     found.push(
                         Diagnostic::new(at(position, 1), message, expected)
@@ -98,18 +115,27 @@ pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
                 }
             },
             '\'' => found.push(
-                Diagnostic::new(at(position, 1), "a prime is not part of the language", "an operator or `;`")
-                    .hint("write a y-derivative as dy(q); a perturbation needs no mark"),
+                Diagnostic::new(
+                    at(position, 1),
+                    "a prime is not part of the language",
+                    "an operator or `;`",
+                )
+                .hint("write a y-derivative as dy(q); a perturbation needs no mark"),
             ),
             '#' | '`' | '\\' | '$' | '@' | '~' | '?' => found.push(Diagnostic::new(
                 at(position, 1),
                 format!("`{character}` is not part of the language"),
                 "an operator, a name or a number",
             )),
-            _ if character.is_ascii() || character.is_alphanumeric() || character.is_whitespace() => {
+            _ if character.is_ascii()
+                || character.is_alphanumeric()
+                || character.is_whitespace() =>
+            {
                 // ² and ³ count as numeric for Unicode.
                 if let Some(hint) = foreign(character) {
-                    found.push(not_in_language(at(position, character.len_utf8()), character).hint(hint));
+                    found.push(
+                        not_in_language(at(position, character.len_utf8()), character).hint(hint),
+                    );
                 }
             }
             _ => {
@@ -133,7 +159,10 @@ fn not_in_language(location: Location, character: char) -> Diagnostic {
 }
 
 fn foreign(character: char) -> Option<&'static str> {
-    FOREIGN.iter().find(|(c, _)| *c == character).map(|(_, hint)| *hint)
+    FOREIGN
+        .iter()
+        .find(|(c, _)| *c == character)
+        .map(|(_, hint)| *hint)
 }
 
 fn closing(opening: char) -> char {

@@ -34,14 +34,25 @@ fn parse<T: Default>(
     if !mistakes.is_empty() {
         return (T::default(), mistakes);
     }
-    let reader = Reader { file, length: text.len(), mistakes: RefCell::new(Vec::new()) };
+    let reader = Reader {
+        file,
+        length: text.len(),
+        mistakes: RefCell::new(Vec::new()),
+    };
     let tokens: proc_macro2::TokenStream = match text.parse() {
         Ok(tokens) => tokens,
         Err(error) => {
             let error: proc_macro2::LexError = error;
             let location = reader.location(error.span());
             let message = "this is not part of the language";
-            return (T::default(), vec![Diagnostic::new(location, message, "a name, a number or an operator")]);
+            return (
+                T::default(),
+                vec![Diagnostic::new(
+                    location,
+                    message,
+                    "a name, a number or an operator",
+                )],
+            );
         }
     };
     let mut tree = T::default();
@@ -76,8 +87,15 @@ impl Reader {
     fn location(&self, span: proc_macro2::Span) -> Location {
         let range = span.byte_range();
         // Past the last token, syn answers with an empty call-site span.
-        let range = if range.is_empty() && range.start == 0 { self.length..self.length } else { range };
-        Location { file: self.file, range }
+        let range = if range.is_empty() && range.start == 0 {
+            self.length..self.length
+        } else {
+            range
+        };
+        Location {
+            file: self.file,
+            range,
+        }
     }
 
     /// The place of the next token, or of the end of the enclosing block.
@@ -90,7 +108,11 @@ impl Reader {
     }
 
     fn syntax_error(&self, error: &syn::Error) -> Diagnostic {
-        Diagnostic::new(self.location(error.span()), error.to_string(), "this is not expected here")
+        Diagnostic::new(
+            self.location(error.span()),
+            error.to_string(),
+            "this is not expected here",
+        )
     }
 
     fn unexpected(&self, input: ParseStream, expected: &str) -> Diagnostic {
@@ -145,13 +167,19 @@ impl Reader {
 
     /// Whether the next token is this word.
     fn peek_word(&self, input: ParseStream, word: &str) -> bool {
-        input.cursor().ident().is_some_and(|(ident, _)| ident == word)
+        input
+            .cursor()
+            .ident()
+            .is_some_and(|(ident, _)| ident == word)
     }
 
     fn name(&self, input: ParseStream, expected: &str) -> Parsed<Name> {
         let location = self.here(input);
         match input.call(syn::Ident::parse_any) {
-            Ok(ident) => Ok(Name { text: ident.to_string(), location }),
+            Ok(ident) => Ok(Name {
+                text: ident.to_string(),
+                location,
+            }),
             Err(_) => Err(self.unexpected(input, expected)),
         }
     }
@@ -262,5 +290,8 @@ impl Reader {
 
 /// From the start of one place to the end of another.
 fn spaced(start: &Location, end: &Location) -> Location {
-    Location { file: start.file, range: start.range.start..end.range.end.max(start.range.end) }
+    Location {
+        file: start.file,
+        range: start.range.start..end.range.end.max(start.range.end),
+    }
 }

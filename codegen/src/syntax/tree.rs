@@ -203,9 +203,16 @@ pub enum MeanItem {
 #[derive(Clone, Debug)]
 pub enum AmplitudeItem {
     /// `integral(Σ w |q|^2) = value;`
-    Integral { integrand: Expression, value: Expression },
+    Integral {
+        integrand: Expression,
+        value: Expression,
+    },
     /// `at y = place { q = value; }`, or `q = value;` without a cross-stream coordinate
-    Point { place: Option<Expression>, field: Expression, value: Expression },
+    Point {
+        place: Option<Expression>,
+        field: Expression,
+        value: Expression,
+    },
 }
 
 #[derive(Clone, Debug)]

@@ -57,7 +57,9 @@ fn check_interval(model: &dyn Model, parameters: &Parameters) -> Result<()> {
     if lower.is_finite() && upper.is_finite() && upper > lower {
         return Ok(());
     }
-    Err(Error::input(format!("the interval {lower}..{upper} is empty: its upper end must lie above its lower end")))
+    Err(Error::input(format!(
+        "the interval {lower}..{upper} is empty: its upper end must lie above its lower end"
+    )))
 }
 
 fn finish(model: &dyn Model, state: BaseState) -> Result<BaseState> {
@@ -92,14 +94,19 @@ fn continuation(
             start = state.parameters.clone();
             state.clone()
         }
-        None => Newton { model, parameters: &start }
-            .refine(None, &DEGREES)
-            .map_err(|failure| describe(model, &start, &failure, "at the default parameters"))?,
+        None => Newton {
+            model,
+            parameters: &start,
+        }
+        .refine(None, &DEGREES)
+        .map_err(|failure| describe(model, &start, &failure, "at the default parameters"))?,
     };
     let at = |fraction: f64| {
         let mut parameters = target.clone();
-        for (value, (from, to)) in
-            parameters.values.iter_mut().zip(start.values.iter().zip(&target.values))
+        for (value, (from, to)) in parameters
+            .values
+            .iter_mut()
+            .zip(start.values.iter().zip(&target.values))
         {
             // Positive parameters move by ratio, so that a decade is one stretch.
             *value = if fraction == 1.0 {
@@ -116,7 +123,12 @@ fn continuation(
     while done < 1.0 {
         let fraction = (done + step).min(1.0);
         let parameters = at(fraction);
-        match (Newton { model, parameters: &parameters }).refine(Some(&state), &DEGREES) {
+        match (Newton {
+            model,
+            parameters: &parameters,
+        })
+        .refine(Some(&state), &DEGREES)
+        {
             Ok(next) => {
                 state = next;
                 done = fraction;
@@ -125,7 +137,12 @@ fn continuation(
             Err(failure) => {
                 step *= 0.4;
                 if step < SMALLEST_STEP {
-                    return Err(describe(model, &parameters, &failure, "on the way from the default parameters"));
+                    return Err(describe(
+                        model,
+                        &parameters,
+                        &failure,
+                        "on the way from the default parameters",
+                    ));
                 }
             }
         }
@@ -136,7 +153,13 @@ fn continuation(
 fn describe(model: &dyn Model, parameters: &Parameters, failure: &Failure, place: &str) -> Error {
     let structure = model.structure();
     let values: Vec<String> = (0..structure.parameters.len())
-        .map(|i| format!("{} = {}", structure.parameters[i].name, parameters.shown(structure, i)))
+        .map(|i| {
+            format!(
+                "{} = {}",
+                structure.parameters[i].name,
+                parameters.shown(structure, i)
+            )
+        })
         .collect();
     Error::computation(format!(
         "Newton's method for the base state failed {place} ({failure}) at {}; \
@@ -152,8 +175,9 @@ fn determine(
     near: Option<&BaseState>,
 ) -> Result<BaseState> {
     let structure = model.structure();
-    let unknown: Vec<usize> =
-        (0..parameters.values.len()).filter(|&i| parameters.automatic[i]).collect();
+    let unknown: Vec<usize> = (0..parameters.values.len())
+        .filter(|&i| parameters.automatic[i])
+        .collect();
     let mut current = parameters.clone();
     current.automatic.fill(false);
     if let Some(state) = near {
@@ -163,7 +187,11 @@ fn determine(
     }
     let conditions = |state: &BaseState| -> nalgebra::DVector<f64> {
         let values = unknown.iter().map(|&index| {
-            let position = structure.base.automatic.iter().position(|a| a.parameter == index);
+            let position = structure
+                .base
+                .automatic
+                .iter()
+                .position(|a| a.parameter == index);
             position.map_or(0.0, |position| {
                 let end = structure.base.automatic[position].end;
                 evaluate(model, KernelId::Automatic, &state.at_end(model, end))[position]
@@ -183,7 +211,9 @@ fn determine(
             let shifted = conditions(&solve_near(model, &moved, Some(&state))?);
             jacobian.set_column(column, &((shifted - &residual) / step));
         }
-        let Some(step) = jacobian.lu().solve(&(-&residual)) else { break };
+        let Some(step) = jacobian.lu().solve(&(-&residual)) else {
+            break;
+        };
         let mut largest = 0.0_f64;
         for (&index, &change) in unknown.iter().zip(step.iter()) {
             let value = current.values[index];
@@ -197,7 +227,10 @@ fn determine(
             return Ok(state);
         }
     }
-    let names: Vec<&str> = unknown.iter().map(|&i| structure.parameters[i].name.as_str()).collect();
+    let names: Vec<&str> = unknown
+        .iter()
+        .map(|&i| structure.parameters[i].name.as_str())
+        .collect();
     Err(Error::computation(format!(
         "the condition that determines {} was not met; give a value instead of auto",
         names.join(", ")

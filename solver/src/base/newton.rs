@@ -3,8 +3,8 @@
 //! A field whose balance has order q in it is a polynomial of degree N, its balance collocated at
 //! N+1−q Gauss points; wall and integral conditions make up the difference.
 
-use super::state::{BaseState, interval};
 use super::RESOLVED;
+use super::state::{BaseState, interval};
 use crate::collocation::{Grid, GridKind, clenshaw_curtis, coefficients};
 use crate::model::{BaseJet, End, KernelId, Model, evaluate};
 use crate::parameters::Parameters;
@@ -28,9 +28,14 @@ pub(super) enum Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Failure::Damping { residual } => write!(f, "no step reduces the residual {residual:.1e}"),
+            Failure::Damping { residual } => {
+                write!(f, "no step reduces the residual {residual:.1e}")
+            }
             Failure::Iterations { residual } => {
-                write!(f, "residual {residual:.1e} after {MOST_ITERATIONS} iterations")
+                write!(
+                    f,
+                    "residual {residual:.1e} after {MOST_ITERATIONS} iterations"
+                )
             }
             Failure::NotFinite => f.write_str("a law has no value at the starting point"),
         }
@@ -64,12 +69,22 @@ type Matrices = Vec<Mat<f64>>;
 
 impl Newton<'_> {
     /// The state at rising degree until its coefficients have died out.
-    pub fn refine(&self, start: Option<&BaseState>, degrees: &[usize]) -> Result<BaseState, Failure> {
+    pub fn refine(
+        &self,
+        start: Option<&BaseState>,
+        degrees: &[usize],
+    ) -> Result<BaseState, Failure> {
         // Without a cross-stream coordinate a profile is a number.
-        let degrees = if self.model.structure().coordinate.is_none() { &[0] } else { degrees };
+        let degrees = if self.model.structure().coordinate.is_none() {
+            &[0]
+        } else {
+            degrees
+        };
         let mut previous = start.cloned();
         let (mut best, mut last, mut failures) = (None, Failure::NotFinite, 0);
-        let first = start.map_or(0, |s| degrees.iter().position(|&d| d >= s.degree).unwrap_or(0));
+        let first = start.map_or(0, |s| {
+            degrees.iter().position(|&d| d >= s.degree).unwrap_or(0)
+        });
         for &degree in &degrees[first.min(degrees.len() - 1)..] {
             match self.solve(previous.as_ref(), degree) {
                 Ok(state) => {
@@ -106,20 +121,38 @@ impl Newton<'_> {
         let mut size = 0;
         for &field in &structure.base.solved {
             offsets.push(size);
-            size += if structure.fields[field].uniform { 1 } else { degree + 1 };
+            size += if structure.fields[field].uniform {
+                1
+            } else {
+                degree + 1
+            };
         }
         let case = self.parameters.case(structure);
         let grid = Grid::new(GridKind::Lobatto(degree + 1));
         let to = |kind: GridKind| -> Matrices {
             let points = Grid::new(kind);
-            (0..=2).map(|order| grid.derivative_on(&points, order)).collect()
+            (0..=2)
+                .map(|order| grid.derivative_on(&points, order))
+                .collect()
         };
         let orders = structure.base.rows.iter().map(|row| row.order);
-        let rows = orders.map(|order| to(GridKind::Gauss(degree + 1 - order))).collect();
+        let rows = orders
+            .map(|order| to(GridKind::Gauss(degree + 1 - order)))
+            .collect();
         let ends = [to(GridKind::Lower), to(GridKind::Upper)];
         let own = to(grid.kind);
-        let discrete =
-            Discrete { newton: self, degree, lower, upper, case, offsets, size, rows, ends, own };
+        let discrete = Discrete {
+            newton: self,
+            degree,
+            lower,
+            upper,
+            case,
+            offsets,
+            size,
+            rows,
+            ends,
+            own,
+        };
         discrete.iterate(discrete.initial(start))
     }
 }
@@ -152,7 +185,12 @@ impl Discrete<'_> {
                     Some(guess) => guess[s],
                     None => point[structure.base_position(field, 0)],
                 };
-                let position = self.offsets[s] + if structure.fields[field].uniform { 0 } else { i };
+                let position = self.offsets[s]
+                    + if structure.fields[field].uniform {
+                        0
+                    } else {
+                        i
+                    };
                 values[position] = value;
             }
         }
@@ -192,13 +230,18 @@ impl Discrete<'_> {
         let state = self.state(values, 0.0);
         let mut rows: Vec<(f64, Vec<f64>)> = Vec::with_capacity(self.size);
         for (index, row) in structure.base.rows.iter().enumerate() {
-            let position: usize =
-                structure.base.rows[..index].iter().map(|r| 1 + r.jets.len()).sum();
+            let position: usize = structure.base.rows[..index]
+                .iter()
+                .map(|r| 1 + r.jets.len())
+                .sum();
             let points = Grid::new(GridKind::Gauss(self.degree + 1 - row.order));
             for (i, &xi) in points.nodes.iter().enumerate() {
                 let out = evaluate(model, KernelId::Base, &state.point(model, xi, 0.0));
                 let slopes = &out[position + 1..=position + row.jets.len()];
-                rows.push((out[position], self.jacobian_row(&row.jets, slopes, &self.rows[index], i)));
+                rows.push((
+                    out[position],
+                    self.jacobian_row(&row.jets, slopes, &self.rows[index], i),
+                ));
             }
         }
         let case = &structure.cases[self.case];
@@ -210,7 +253,10 @@ impl Discrete<'_> {
             for condition in &case.base_conditions {
                 let slopes = &out[position + 1..=position + condition.jets.len()];
                 if condition.end == end {
-                    rows.push((out[position], self.jacobian_row(&condition.jets, slopes, matrices, 0)));
+                    rows.push((
+                        out[position],
+                        self.jacobian_row(&condition.jets, slopes, matrices, 0),
+                    ));
                 }
                 position += 1 + condition.jets.len();
             }
@@ -250,7 +296,10 @@ impl Discrete<'_> {
                 if i == 0 {
                     total -= out[position + jets.len() + 1];
                 }
-                for (entry, slope) in row.iter_mut().zip(self.jacobian_row(jets, slopes, &self.own, i)) {
+                for (entry, slope) in row
+                    .iter_mut()
+                    .zip(self.jacobian_row(jets, slopes, &self.own, i))
+                {
                     *entry += weight * slope;
                 }
             }
@@ -259,17 +308,27 @@ impl Discrete<'_> {
         }
     }
 
-    fn jacobian_row(&self, jets: &[BaseJet], slopes: &[f64], matrices: &[Mat<f64>], i: usize) -> Vec<f64> {
+    fn jacobian_row(
+        &self,
+        jets: &[BaseJet],
+        slopes: &[f64],
+        matrices: &[Mat<f64>],
+        i: usize,
+    ) -> Vec<f64> {
         let structure = self.model().structure();
         let scale = 2.0 / (self.upper - self.lower);
         let mut row = vec![0.0; self.size];
         for (jet, &slope) in jets.iter().zip(slopes) {
-            let Some(s) = structure.base.solved.iter().position(|&f| f == jet.field) else { continue };
+            let Some(s) = structure.base.solved.iter().position(|&f| f == jet.field) else {
+                continue;
+            };
             if structure.fields[jet.field].uniform {
                 row[self.offsets[s]] += slope;
                 continue;
             }
-            let Some(matrix) = matrices.get(jet.order) else { continue };
+            let Some(matrix) = matrices.get(jet.order) else {
+                continue;
+            };
             let factor = slope * scale.powi(jet.order as i32);
             for j in 0..=self.degree {
                 row[self.offsets[s] + j] += factor * matrix[(i, j)];
@@ -281,13 +340,20 @@ impl Discrete<'_> {
     /// Whether a trial keeps the declared ranges, by values at the nodes.
     fn admissible(&self, values: &[f64]) -> bool {
         let structure = self.model().structure();
-        structure.base.solved.iter().zip(&self.offsets).all(|(&field, &offset)| {
-            let info = &structure.fields[field];
-            let count = if info.uniform { 1 } else { self.degree + 1 };
-            // Rounding may carry a profile that dies out a little below zero.
-            let slack = 1e-9;
-            values[offset..offset + count].iter().all(|&v| v > info.lower - slack && v < info.upper + slack)
-        })
+        structure
+            .base
+            .solved
+            .iter()
+            .zip(&self.offsets)
+            .all(|(&field, &offset)| {
+                let info = &structure.fields[field];
+                let count = if info.uniform { 1 } else { self.degree + 1 };
+                // Rounding may carry a profile that dies out a little below zero.
+                let slack = 1e-9;
+                values[offset..offset + count]
+                    .iter()
+                    .all(|&v| v > info.lower - slack && v < info.upper + slack)
+            })
     }
 
     fn iterate(&self, mut values: Vec<f64>) -> Result<BaseState, Failure> {
@@ -297,22 +363,32 @@ impl Discrete<'_> {
         for _ in 0..MOST_ITERATIONS {
             let right = Mat::from_fn(self.size, 1, |i, _| -residual[i]);
             let step = jacobian.partial_piv_lu().solve(&right);
-            let reach = (0..self.size).map(|i| step[(i, 0)].abs()).fold(0.0, f64::max);
+            let reach = (0..self.size)
+                .map(|i| step[(i, 0)].abs())
+                .fold(0.0, f64::max);
             let scale = values.iter().fold(1e-300_f64, |m, v| m.max(v.abs()));
             if !reach.is_finite() {
                 return Err(Failure::NotFinite);
             }
             let mut damping = 1.0;
             loop {
-                let trial: Vec<f64> =
-                    values.iter().enumerate().map(|(i, v)| v + damping * step[(i, 0)]).collect();
-                let outcome = if self.admissible(&trial) { self.system(&trial) } else { None };
+                let trial: Vec<f64> = values
+                    .iter()
+                    .enumerate()
+                    .map(|(i, v)| v + damping * step[(i, 0)])
+                    .collect();
+                let outcome = if self.admissible(&trial) {
+                    self.system(&trial)
+                } else {
+                    None
+                };
                 if let Some((new_residual, new_jacobian)) = outcome {
                     let new_size = norm(&new_residual);
                     // Near the solution rounding may keep the residual from falling.
                     let settled = reach < CONVERGED * scale;
                     if new_size <= (1.0 - 0.25 * damping) * size || settled {
-                        (values, residual, jacobian, size) = (trial, new_residual, new_jacobian, new_size);
+                        (values, residual, jacobian, size) =
+                            (trial, new_residual, new_jacobian, new_size);
                         if settled {
                             return Ok(self.state(&values, size));
                         }

@@ -37,7 +37,15 @@ impl BaseState {
         let (lower, upper) = interval(model, parameters);
         let case = parameters.case(model.structure());
         let parameters = parameters.clone();
-        BaseState { parameters, case, lower, upper, degree: 0, series: Vec::new(), residual: 0.0 }
+        BaseState {
+            parameters,
+            case,
+            lower,
+            upper,
+            degree: 0,
+            series: Vec::new(),
+            residual: 0.0,
+        }
     }
 
     /// y of a point ξ in [−1, 1].
@@ -63,8 +71,9 @@ impl BaseState {
         point[first..].copy_from_slice(&closed);
         for (&field, series) in structure.base.solved.iter().zip(&self.series) {
             let mut scale = 1.0;
-            for (order, value) in
-                derivative_values(series, xi, structure.base_order).into_iter().enumerate()
+            for (order, value) in derivative_values(series, xi, structure.base_order)
+                .into_iter()
+                .enumerate()
             {
                 point[structure.base_position(field, order)] = value * scale;
                 scale *= self.scale();
@@ -83,8 +92,16 @@ impl BaseState {
     pub fn tail(&self) -> f64 {
         let tail = |series: &Vec<f64>| {
             let largest = series.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-            let last = series.iter().rev().take(3).fold(0.0_f64, |m, c| m.max(c.abs()));
-            if largest > 0.0 && series.len() > 3 { last / largest } else { 0.0 }
+            let last = series
+                .iter()
+                .rev()
+                .take(3)
+                .fold(0.0_f64, |m, c| m.max(c.abs()));
+            if largest > 0.0 && series.len() > 3 {
+                last / largest
+            } else {
+                0.0
+            }
         };
         self.series.iter().map(tail).fold(0.0, f64::max)
     }

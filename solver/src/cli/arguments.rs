@@ -35,7 +35,9 @@ pub enum Command {
         format: Format,
     },
     /// Solve for the base state and print its profiles.
-    #[command(after_help = "Example: landau base vibrated_bed --set S=400 --set H=auto --points 21")]
+    #[command(
+        after_help = "Example: landau base vibrated_bed --set S=400 --set H=auto --points 21"
+    )]
     Base {
         /// A built model, or the path of a .model file.
         model: String,
@@ -57,7 +59,9 @@ pub enum Command {
         common: Common,
     },
     /// Landau coefficients, kind of bifurcation, amplitude, error, resonances at one wavenumber.
-    #[command(after_help = "Example: landau point vibrated_bed --k 0.16\n         landau point my.model --k 1 --set r=0.1 --json")]
+    #[command(
+        after_help = "Example: landau point vibrated_bed --k 0.16\n         landau point my.model --k 1 --set r=0.1 --json"
+    )]
     Point {
         /// A built model, or the path of a .model file.
         model: String,
@@ -71,7 +75,9 @@ pub enum Command {
         common: Common,
     },
     /// Where growth or c2 changes sign, or c2 jumps through infinity.
-    #[command(after_help = "Examples:\n  landau critical vibrated_bed --vary k --from 0.1 --to 0.2\n  landau critical vibrated_bed --vary k --from 0.06 --to 0.1 --of c2\n  landau critical vibrated_bed --vary S --from 50 --to 100 --k 0.16\n  landau critical plane_poiseuille --vary R --from 5000 --to 6500 --minimize k=0.9:1.1")]
+    #[command(
+        after_help = "Examples:\n  landau critical vibrated_bed --vary k --from 0.1 --to 0.2\n  landau critical vibrated_bed --vary k --from 0.06 --to 0.1 --of c2\n  landau critical vibrated_bed --vary S --from 50 --to 100 --k 0.16\n  landau critical plane_poiseuille --vary R --from 5000 --to 6500 --minimize k=0.9:1.1"
+    )]
     Critical {
         /// A built model, or the path of a .model file.
         model: String,
@@ -81,7 +87,9 @@ pub enum Command {
         common: Common,
     },
     /// Landau points over ranges of k and parameters, as CSV; resumes where it was interrupted.
-    #[command(after_help = "Examples:\n  landau sweep vibrated_bed --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep vibrated_bed --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv")]
+    #[command(
+        after_help = "Examples:\n  landau sweep vibrated_bed --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep vibrated_bed --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv"
+    )]
     Sweep {
         /// A built model, or the path of a .model file.
         model: String,
@@ -182,9 +190,11 @@ pub enum Of {
 
 fn complex(text: &str) -> Result<C64, String> {
     let number = |part: &str| {
-        part.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(|| {
-            format!("`{part}` is not a number; --near accepts RE or RE,IM")
-        })
+        part.trim()
+            .parse::<f64>()
+            .ok()
+            .filter(|v| v.is_finite())
+            .ok_or_else(|| format!("`{part}` is not a number; --near accepts RE or RE,IM"))
     };
     match text.split_once(',') {
         Some((re, im)) => Ok(C64::new(number(re)?, number(im)?)),
@@ -194,11 +204,18 @@ fn complex(text: &str) -> Result<C64, String> {
 
 /// `NAME=A:B` or `NAME=A:B:N`
 pub fn range(option: &str, text: &str, parts: usize) -> Result<(String, Vec<f64>), String> {
-    let expected = if parts == 3 { "NAME=FROM:TO:COUNT" } else { "k=A:B" };
+    let expected = if parts == 3 {
+        "NAME=FROM:TO:COUNT"
+    } else {
+        "k=A:B"
+    };
     let wrong = || format!("{option} {text}: {option} accepts {expected}");
     let (name, numbers) = text.split_once('=').ok_or_else(wrong)?;
-    let numbers: Vec<f64> =
-        numbers.split(':').map(|n| n.trim().parse::<f64>()).collect::<Result<_, _>>().map_err(|_| wrong())?;
+    let numbers: Vec<f64> = numbers
+        .split(':')
+        .map(|n| n.trim().parse::<f64>())
+        .collect::<Result<_, _>>()
+        .map_err(|_| wrong())?;
     if numbers.len() != parts || numbers.iter().any(|n| !n.is_finite()) {
         return Err(wrong());
     }

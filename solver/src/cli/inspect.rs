@@ -20,9 +20,17 @@ pub fn models(models: &[Box<dyn Model>], json: bool) -> Result<()> {
         say!("{}", json!(list));
         return Ok(());
     }
-    let width = models.iter().map(|m| m.structure().name.len()).max().unwrap_or(0);
+    let width = models
+        .iter()
+        .map(|m| m.structure().name.len())
+        .max()
+        .unwrap_or(0);
     for model in models {
-        say!("{:width$}  {}", model.structure().name, model.structure().title);
+        say!(
+            "{:width$}  {}",
+            model.structure().name,
+            model.structure().title
+        );
     }
     Ok(())
 }
@@ -33,7 +41,11 @@ pub fn check(file: &Path) -> Result<()> {
     match generate(&sources) {
         Ok((derivation, _)) => {
             let fields = derivation.model.field_names().join(", ");
-            say!("{}: the model `{}` in {fields} is well formed", file.display(), derivation.model.name);
+            say!(
+                "{}: the model `{}` in {fields} is well formed",
+                file.display(),
+                derivation.model.name
+            );
             Ok(())
         }
         Err(mistakes) => Err(Error::input(format!("the spec has mistakes\n\n{mistakes}"))),
@@ -42,9 +54,20 @@ pub fn check(file: &Path) -> Result<()> {
 
 pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format) -> Result<()> {
     let Format::Text = format;
-    let mut files = model.sources().into_iter().map(|(path, text)| SourceFile { path, text });
-    let spec = files.next().ok_or_else(|| Error::input("the model has no source"))?;
-    let stem = |path: &str| Path::new(path).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let mut files = model
+        .sources()
+        .into_iter()
+        .map(|(path, text)| SourceFile { path, text });
+    let spec = files
+        .next()
+        .ok_or_else(|| Error::input("the model has no source"))?;
+    let stem = |path: &str| {
+        Path::new(path)
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
     let laws = files.map(|file| (stem(&file.path), file)).collect();
     let (derivation, _) = generate(&Sources { spec, laws })
         .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;

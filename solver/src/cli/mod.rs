@@ -52,27 +52,48 @@ fn dispatch(models: &[Box<dyn Model>], command: Command) -> Result<()> {
     match command {
         Command::Models { json } => inspect::models(models, json),
         Command::Check { file } => inspect::check(&file),
-        Command::Explain { model, operator, format } => {
-            with_model(models, &model, |model| inspect::explain(model, operator, format))
-        }
-        Command::Base { model, points, common } => {
-            with_setup(models, &model, &common, |setup| solve::base(setup, points, &common))
-        }
-        Command::Spectrum { model, k, common } => {
-            with_setup(models, &model, &common, |setup| solve::spectrum(setup, k, &common))
-        }
-        Command::Point { model, k, order, common } => {
-            with_setup(models, &model, &common, |setup| solve::point(setup, k, order, &common))
-        }
-        Command::Critical { model, options, common } => {
-            with_setup(models, &model, &common, |setup| solve::critical(setup, &options, &common))
-        }
-        Command::Sweep { model, options, common } => {
-            with_setup(models, &model, &common, |setup| solve::sweep(setup, &options, &common))
-        }
-        Command::Verify { model, k, common } => {
-            with_setup(models, &model, &common, |setup| solve::verify(setup, k, &common))
-        }
+        Command::Explain {
+            model,
+            operator,
+            format,
+        } => with_model(models, &model, |model| {
+            inspect::explain(model, operator, format)
+        }),
+        Command::Base {
+            model,
+            points,
+            common,
+        } => with_setup(models, &model, &common, |setup| {
+            solve::base(setup, points, &common)
+        }),
+        Command::Spectrum { model, k, common } => with_setup(models, &model, &common, |setup| {
+            solve::spectrum(setup, k, &common)
+        }),
+        Command::Point {
+            model,
+            k,
+            order,
+            common,
+        } => with_setup(models, &model, &common, |setup| {
+            solve::point(setup, k, order, &common)
+        }),
+        Command::Critical {
+            model,
+            options,
+            common,
+        } => with_setup(models, &model, &common, |setup| {
+            solve::critical(setup, &options, &common)
+        }),
+        Command::Sweep {
+            model,
+            options,
+            common,
+        } => with_setup(models, &model, &common, |setup| {
+            solve::sweep(setup, &options, &common)
+        }),
+        Command::Verify { model, k, common } => with_setup(models, &model, &common, |setup| {
+            solve::verify(setup, k, &common)
+        }),
     }
 }
 
@@ -87,13 +108,15 @@ fn with_model<R>(
     }
     let path = Path::new(name);
     if name.ends_with(".model") || path.is_file() {
-        let sources = read_sources(path)
-            .map_err(|e| Error::input(format!("{name} cannot be read: {e}")))?;
-        let model = TapeModel::new(&sources).map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
+        let sources =
+            read_sources(path).map_err(|e| Error::input(format!("{name} cannot be read: {e}")))?;
+        let model = TapeModel::new(&sources)
+            .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
         return action(&model);
     }
     let names: Vec<&str> = models.iter().map(|m| m.structure().name.as_str()).collect();
-    let near = nearest(name, names.iter().copied()).map_or(String::new(), |n| format!("; did you mean `{n}`?"));
+    let near = nearest(name, names.iter().copied())
+        .map_or(String::new(), |n| format!("; did you mean `{n}`?"));
     Err(Error::input(format!(
         "there is no model `{name}`: built are {}; the path of a .model file is accepted too{near}",
         names.join(", ")
@@ -109,14 +132,19 @@ fn with_setup<R>(
     with_model(models, name, |model| {
         let structure = model.structure();
         if !(4..=1000).contains(&common.resolution) {
-            return Err(Error::input(format!("-M {} is out of range: -M accepts 4 to 1000", common.resolution)));
+            return Err(Error::input(format!(
+                "-M {} is out of range: -M accepts 4 to 1000",
+                common.resolution
+            )));
         }
         let mut setup = Setup::new(model, common.resolution);
         for assignment in &common.set {
             let (name, value) = assignment.split_once('=').ok_or_else(|| {
                 Error::input(format!("--set {assignment}: --set accepts NAME=VALUE"))
             })?;
-            setup.parameters.set_text(structure, name.trim(), value.trim())?;
+            setup
+                .parameters
+                .set_text(structure, name.trim(), value.trim())?;
         }
         action(&setup)
     })

@@ -7,7 +7,11 @@ use serde_json::{Map, Value, json};
 
 /// A finite number, or null.
 pub fn number(value: f64) -> Value {
-    if value.is_finite() { json!(value) } else { Value::Null }
+    if value.is_finite() {
+        json!(value)
+    } else {
+        Value::Null
+    }
 }
 
 /// [re, im]

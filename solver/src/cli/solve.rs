@@ -5,10 +5,13 @@ use super::{picture, report};
 use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::spectrum as spectra;
-use crate::study::critical::{Question, Quantity};
+use crate::study::critical::{Quantity, Question};
 use crate::study::sweep::{Range, Sweep, write_whole};
 use crate::study::verify::judge;
-use crate::study::{Axis, Setup, accuracy, check_wavenumber, critical as criticality, sensitivity, verify as certificate};
+use crate::study::{
+    Axis, Setup, accuracy, check_wavenumber, critical as criticality, sensitivity,
+    verify as certificate,
+};
 use crate::weakly::{Selection, outputs};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Map, Value, json};
@@ -23,22 +26,36 @@ fn selection(common: &Common) -> Selection<'static> {
 fn progress(what: &str) -> ProgressBar {
     let bar = ProgressBar::new(0);
     let style = ProgressStyle::with_template("{prefix} [{bar:40}] {pos}/{len} {eta}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
+    bar.set_style(
+        style
+            .unwrap_or_else(|_| ProgressStyle::default_bar())
+            .progress_chars("=> "),
+    );
     bar.set_prefix(what.to_owned());
     bar
 }
 
 pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
     if !(2..=100_000).contains(&points) {
-        return Err(Error::input(format!("--points {points} is out of range: it accepts 2 to 100000")));
+        return Err(Error::input(format!(
+            "--points {points} is out of range: it accepts 2 to 100000"
+        )));
     }
     let state = setup.base(None)?;
     let structure = setup.model.structure();
     let coordinate = structure.coordinate.clone().unwrap_or_else(|| "y".into());
-    let count = if structure.coordinate.is_some() { points } else { 1 };
+    let count = if structure.coordinate.is_some() {
+        points
+    } else {
+        1
+    };
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); structure.fields.len() + 1];
     for i in 0..count {
-        let xi = if count == 1 { 0.0 } else { -1.0 + 2.0 * i as f64 / (count - 1) as f64 };
+        let xi = if count == 1 {
+            0.0
+        } else {
+            -1.0 + 2.0 * i as f64 / (count - 1) as f64
+        };
         let point = state.point(setup.model, xi, 0.0);
         columns[0].push(point[0]);
         for field in 0..structure.fields.len() {
@@ -48,7 +65,13 @@ pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
     if common.json {
         let mut profiles = Map::new();
         for (field, info) in structure.fields.iter().enumerate() {
-            profiles.insert(info.name.clone(), columns[field + 1].iter().map(|&v| report::number(v)).collect());
+            profiles.insert(
+                info.name.clone(),
+                columns[field + 1]
+                    .iter()
+                    .map(|&v| report::number(v))
+                    .collect(),
+            );
         }
         let object = json!({
             "model": structure.name,
@@ -62,9 +85,17 @@ pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
         say!("{object}");
         return Ok(());
     }
-    say!("{} — base state, {} Chebyshev polynomials, tail {:.1e}", structure.title, state.degree + 1, state.tail());
+    say!(
+        "{} — base state, {} Chebyshev polynomials, tail {:.1e}",
+        structure.title,
+        state.degree + 1,
+        state.tail()
+    );
     let names = structure.fields.iter().map(|f| f.name.as_str());
-    let header: Vec<String> = std::iter::once(coordinate.as_str()).chain(names).map(|n| format!("{n:>16}")).collect();
+    let header: Vec<String> = std::iter::once(coordinate.as_str())
+        .chain(names)
+        .map(|n| format!("{n:>16}"))
+        .collect();
     say!("{}", header.join(""));
     for i in 0..count {
         let row: Vec<String> = columns.iter().map(|c| format!("{:>16.9}", c[i])).collect();
@@ -75,7 +106,9 @@ pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
 
 pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
     if !(k.is_finite() && k >= 0.0) {
-        return Err(Error::input(format!("--k {k}: a wavenumber is a number from 0 on")));
+        return Err(Error::input(format!(
+            "--k {k}: a wavenumber is a number from 0 on"
+        )));
     }
     let state = setup.base(None)?;
     setup.with_problem(&state, |problem| {
@@ -83,7 +116,8 @@ pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
         let adjoint = spectra::adjoint_eigenvalues(problem, k);
         let structure = setup.model.structure();
         if common.json {
-            let list = |values: &[C64]| -> Value { values.iter().map(|&c| report::complex(c)).collect() };
+            let list =
+                |values: &[C64]| -> Value { values.iter().map(|&c| report::complex(c)).collect() };
             let mut object = json!({
                 "model": structure.name,
                 "parameters": report::parameters(setup, &state.parameters),
@@ -101,10 +135,18 @@ pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
             say!("{object}");
             return Ok(());
         }
-        say!("{} at k = {k}, M = {}: leading eigenvalues", structure.title, setup.resolution);
+        say!(
+            "{} at k = {k}, M = {}: leading eigenvalues",
+            structure.title,
+            setup.resolution
+        );
         say!("{:>44}   {:>44}", "L", "L†");
         for (i, c) in direct.iter().take(20).enumerate() {
-            let other = adjoint.as_ref().ok().and_then(|a| a.get(i)).map_or(String::new(), |&c| report::shown(c));
+            let other = adjoint
+                .as_ref()
+                .ok()
+                .and_then(|a| a.get(i))
+                .map_or(String::new(), |&c| report::shown(c));
             say!("{:>44}   {:>44}", report::shown(*c), other);
         }
         if let Err(reason) = adjoint {
@@ -117,7 +159,9 @@ pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
 pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()> {
     check_wavenumber(k)?;
     if order != 3 {
-        return Err(Error::input(format!("--order {order} is not available: it accepts 3")));
+        return Err(Error::input(format!(
+            "--order {order} is not available: it accepts 3"
+        )));
     }
     let state = setup.base(None)?;
     let structure = setup.model.structure();
@@ -126,7 +170,9 @@ pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()>
         let resonance = accuracy::resonance(point)?;
         let slopes = sensitivity::parameters(setup, &state, &point.expansion.pair)?;
         let values = outputs(point);
-        if error.c2 > UNCONVERGED * point.c2.norm() || error.c0 > UNCONVERGED * point.c0.norm().max(1e-9) {
+        if error.c2 > UNCONVERGED * point.c2.norm()
+            || error.c0 > UNCONVERGED * point.c0.norm().max(1e-9)
+        {
             eprintln!(
                 "warning: not converged at M = {}: c0 ± {:.1e}, c2 ± {:.1e}; try a larger M",
                 setup.resolution, error.c0, error.c2
@@ -135,11 +181,17 @@ pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()>
         if common.json {
             let mut named = Map::new();
             for (info, value) in structure.outputs.iter().zip(&values) {
-                named.insert(info.name.clone(), json!([report::number(value[0]), report::number(value[1])]));
+                named.insert(
+                    info.name.clone(),
+                    json!([report::number(value[0]), report::number(value[1])]),
+                );
             }
             let mut derivatives = Map::new();
             for (index, slope) in &slopes {
-                derivatives.insert(structure.parameters[*index].name.clone(), report::complex(*slope));
+                derivatives.insert(
+                    structure.parameters[*index].name.clone(),
+                    report::complex(*slope),
+                );
             }
             say!(
                 "{}",
@@ -170,15 +222,29 @@ pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()>
         say!("  c2 = {}   ± {:.1e}", report::shown(point.c2), error.c2);
         say!("  {}", point.bifurcation());
         match point.amplitude() {
-            Some(amplitude) => say!("  A_e = {amplitude:.8}, normalised by {}", structure.amplitude.description),
-            None => say!("  no equilibrium at cubic order; normalised by {}", structure.amplitude.description),
+            Some(amplitude) => say!(
+                "  A_e = {amplitude:.8}, normalised by {}",
+                structure.amplitude.description
+            ),
+            None => say!(
+                "  no equilibrium at cubic order; normalised by {}",
+                structure.amplitude.description
+            ),
         }
-        say!("  distance to resonance: mean flow {:.3e}, 2:1 {:.3e}", resonance.mean_flow, resonance.second_harmonic);
+        say!(
+            "  distance to resonance: mean flow {:.3e}, 2:1 {:.3e}",
+            resonance.mean_flow,
+            resonance.second_harmonic
+        );
         for (info, value) in structure.outputs.iter().zip(&values) {
             say!("  {} = {:.8} + {:.8} A²", info.name, value[0], value[1]);
         }
         for (index, slope) in &slopes {
-            say!("  dc0/d{} = {}", structure.parameters[*index].name, report::shown(*slope));
+            say!(
+                "  dc0/d{} = {}",
+                structure.parameters[*index].name,
+                report::shown(*slope)
+            );
         }
         Ok(())
     })
@@ -199,7 +265,9 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         Some(text) => {
             let (name, bounds) = range("--minimize", text, 2).map_err(Error::Input)?;
             if name != "k" || axis == Axis::Wavenumber || bounds[0] >= bounds[1] {
-                return Err(Error::input(format!("--minimize {text}: it accepts k=A:B with A < B, for a parameter that varies")));
+                return Err(Error::input(format!(
+                    "--minimize {text}: it accepts k=A:B with A < B, for a parameter that varies"
+                )));
             }
             check_wavenumber(bounds[0])?;
             Some((bounds[0], bounds[1]))
@@ -207,7 +275,10 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         None => None,
     };
     if axis != Axis::Wavenumber && options.k.is_none() && minimise.is_none() {
-        return Err(Error::input(format!("--vary {}: give the wavenumber with --k, or a range with --minimize k=A:B", options.vary)));
+        return Err(Error::input(format!(
+            "--vary {}: give the wavenumber with --k, or a range with --minimize k=A:B",
+            options.vary
+        )));
     }
     if minimise.is_some() && options.of != Of::Growth {
         return Err(Error::input("--minimize goes with --of growth"));
@@ -221,7 +292,14 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         Of::Resonance => (Quantity::Resonance, "resonance"),
     };
     let (from, to, k) = (options.from, options.to, options.k.unwrap_or(0.0));
-    let question = Question { axis, from, to, quantity, k, near: common.near };
+    let question = Question {
+        axis,
+        from,
+        to,
+        quantity,
+        k,
+        near: common.near,
+    };
     let bar = progress("scanning");
     let found = match minimise {
         Some(bounds) => vec![criticality::minimise(setup, question, bounds, &bar)?],
@@ -229,8 +307,14 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
     };
     let first = &found[0];
     if found.len() > 1 {
-        let others: Vec<String> = found[1..].iter().map(|c| format!("{:.8}", c.value)).collect();
-        eprintln!("note: further points in the interval: {}", others.join(", "));
+        let others: Vec<String> = found[1..]
+            .iter()
+            .map(|c| format!("{:.8}", c.value))
+            .collect();
+        eprintln!(
+            "note: further points in the interval: {}",
+            others.join(", ")
+        );
     }
     if common.json {
         say!(
@@ -244,7 +328,13 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
             })
         );
     } else {
-        say!("{} = {:.10} (of {name}) at k = {:.10}, c0 = {}", options.vary, first.value, first.k, report::shown(first.c0));
+        say!(
+            "{} = {:.10} (of {name}) at k = {:.10}, c0 = {}",
+            options.vary,
+            first.value,
+            first.k,
+            report::shown(first.c0)
+        );
     }
     Ok(())
 }
@@ -255,16 +345,30 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
         let (name, numbers) = range("--over", text, 3).map_err(Error::Input)?;
         let count = numbers[2];
         if count < 1.0 || count.fract() != 0.0 || count > 1e6 {
-            return Err(Error::input(format!("--over {text}: COUNT is a whole number from 1 to 1000000")));
+            return Err(Error::input(format!(
+                "--over {text}: COUNT is a whole number from 1 to 1000000"
+            )));
         }
         let axis = Axis::named(setup.model, &name)?;
         if ranges.iter().any(|r| r.axis == axis) {
-            return Err(Error::input(format!("--over {text}: `{name}` varies already")));
+            return Err(Error::input(format!(
+                "--over {text}: `{name}` varies already"
+            )));
         }
         let count = count as usize;
-        let step = if count > 1 { (numbers[1] - numbers[0]) / (count - 1) as f64 } else { 0.0 };
+        let step = if count > 1 {
+            (numbers[1] - numbers[0]) / (count - 1) as f64
+        } else {
+            0.0
+        };
         let values: Vec<f64> = (0..count)
-            .map(|i| if i > 0 && i + 1 == count { numbers[1] } else { numbers[0] + step * i as f64 })
+            .map(|i| {
+                if i > 0 && i + 1 == count {
+                    numbers[1]
+                } else {
+                    numbers[0] + step * i as f64
+                }
+            })
             .collect();
         for &value in [values.first(), values.last()].into_iter().flatten() {
             if axis == Axis::Wavenumber {
@@ -275,23 +379,45 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
         ranges.push(Range { name, axis, values });
     }
     if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
-        check_wavenumber(options.k.ok_or_else(|| Error::input("no range varies k: give it with --k"))?)?;
+        check_wavenumber(
+            options
+                .k
+                .ok_or_else(|| Error::input("no range varies k: give it with --k"))?,
+        )?;
     }
-    let sweep = Sweep { setup, ranges, near: common.near, k: options.k };
+    let sweep = Sweep {
+        setup,
+        ranges,
+        near: common.near,
+        k: options.k,
+    };
     let rows = sweep.run_to(&options.out, &progress("sweeping"))?;
     if let Some(path) = &options.plot {
         write_whole(path, picture::sweep(setup, &sweep, &rows).as_bytes())?;
     }
     let good = rows.iter().filter(|r| r.status == "ok").count();
-    let unstable = rows.iter().filter(|r| r.c0.is_some_and(|c| c[0] > 0.0)).count();
+    let unstable = rows
+        .iter()
+        .filter(|r| r.c0.is_some_and(|c| c[0] > 0.0))
+        .count();
     if common.json {
-        say!("{}", json!({"out": options.out.display().to_string(), "rows": rows.len(), "ok": good, "unstable": unstable}));
+        say!(
+            "{}",
+            json!({"out": options.out.display().to_string(), "rows": rows.len(), "ok": good, "unstable": unstable})
+        );
     } else {
         picture::table(&sweep, &rows);
-        say!("{} rows, {good} with a number, {unstable} unstable: {}", rows.len(), options.out.display());
+        say!(
+            "{} rows, {good} with a number, {unstable} unstable: {}",
+            rows.len(),
+            options.out.display()
+        );
     }
     if good == 0 {
-        return Err(Error::computation(format!("no point of the sweep has a number: {}", rows[0].status)));
+        return Err(Error::computation(format!(
+            "no point of the sweep has a number: {}",
+            rows[0].status
+        )));
     }
     Ok(())
 }
@@ -306,18 +432,36 @@ pub fn verify(setup: &Setup, k: f64, common: &Common) -> Result<()> {
                        "bound": report::number(c.bound), "passed": c.passed, "detail": c.detail})
             })
             .collect();
-        say!("{}", json!({"model": setup.model.structure().name, "k": k, "M": setup.resolution, "checks": list}));
+        say!(
+            "{}",
+            json!({"model": setup.model.structure().name, "k": k, "M": setup.resolution, "checks": list})
+        );
     } else {
-        say!("{} at k = {k}, M = {}", setup.model.structure().title, setup.resolution);
+        say!(
+            "{} at k = {k}, M = {}",
+            setup.model.structure().title,
+            setup.resolution
+        );
         let mut part = 0;
         for check in &checks {
             if check.part != part {
                 part = check.part;
-                let titles = ["residual order", "duality", "two routes", "nonlinear forms", "convergence"];
+                let titles = [
+                    "residual order",
+                    "duality",
+                    "two routes",
+                    "nonlinear forms",
+                    "convergence",
+                ];
                 say!("{part}. {}", titles[part - 1]);
             }
             let mark = if check.passed { "  ok  " } else { "FAILED" };
-            say!("  {mark} {:<48} {:>12.4e}   {}", check.name, check.value, check.detail);
+            say!(
+                "  {mark} {:<48} {:>12.4e}   {}",
+                check.name,
+                check.value,
+                check.detail
+            );
         }
     }
     judge(&checks)

@@ -33,7 +33,9 @@ impl Grid {
         let nodes = match kind {
             GridKind::Gauss(n) => {
                 // −cos((2j+1)π/2n), written as a sine for symmetry to rounding
-                (0..n).map(|j| (PI * (2.0 * j as f64 + 1.0 - n as f64) / (2.0 * n as f64)).sin()).collect()
+                (0..n)
+                    .map(|j| (PI * (2.0 * j as f64 + 1.0 - n as f64) / (2.0 * n as f64)).sin())
+                    .collect()
             }
             GridKind::Lobatto(n) => lobatto(n),
             GridKind::Interior(n) => lobatto(n + 2)[1..=n].to_vec(),
@@ -102,8 +104,12 @@ impl Grid {
                 matrix[(i, j)] = 1.0;
                 continue;
             }
-            let terms: Vec<f64> =
-                self.nodes.iter().zip(&weights).map(|(node, w)| w / (x - node)).collect();
+            let terms: Vec<f64> = self
+                .nodes
+                .iter()
+                .zip(&weights)
+                .map(|(node, w)| w / (x - node))
+                .collect();
             let sum: f64 = terms.iter().sum();
             for (j, term) in terms.iter().enumerate() {
                 matrix[(i, j)] = term / sum;
@@ -139,7 +145,9 @@ fn lobatto(n: usize) -> Vec<f64> {
         return vec![0.0];
     }
     let degree = (n - 1) as f64;
-    (0..n).map(|j| (PI * (2.0 * j as f64 - degree) / (2.0 * degree)).sin()).collect()
+    (0..n)
+        .map(|j| (PI * (2.0 * j as f64 - degree) / (2.0 * degree)).sin())
+        .collect()
 }
 
 /// Clenshaw–Curtis weights for the n extrema on [−1, 1]: exact for polynomials of degree n − 1.
@@ -211,7 +219,11 @@ fn differentiate(series: &[f64]) -> Vec<f64> {
     }
     let mut derivative = vec![0.0; n - 1];
     for m in (0..n - 1).rev() {
-        let above = if m + 2 < n - 1 { derivative[m + 2] } else { 0.0 };
+        let above = if m + 2 < n - 1 {
+            derivative[m + 2]
+        } else {
+            0.0
+        };
         derivative[m] = above + 2.0 * (m + 1) as f64 * series[m + 1];
     }
     derivative[0] *= 0.5;

@@ -44,7 +44,11 @@ impl Layout {
         let mut size = 0;
         for field in 0..conditions.len() {
             let kind = grid(field);
-            columns.push(Block { grid: kind, offset: size, len: count(kind) });
+            columns.push(Block {
+                grid: kind,
+                offset: size,
+                len: count(kind),
+            });
             size += count(kind);
         }
         let mut rows = Vec::new();
@@ -56,10 +60,19 @@ impl Layout {
                 (Some(m), 2) => GridKind::Interior(m - 1),
                 (Some(m), q) => GridKind::Gauss((m + 1).saturating_sub(q)),
             };
-            rows.push(Block { grid: kind, offset, len: count(kind) });
+            rows.push(Block {
+                grid: kind,
+                offset,
+                len: count(kind),
+            });
             offset += count(kind);
         }
-        Layout { columns, rows, walls: offset, size }
+        Layout {
+            columns,
+            rows,
+            walls: offset,
+            size,
+        }
     }
 }
 

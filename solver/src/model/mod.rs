@@ -52,28 +52,38 @@ pub fn output_length(structure: &Structure, kernel: KernelId) -> usize {
         KernelId::Base => structure.base.rows.iter().map(|r| jets(&r.jets)).sum(),
         KernelId::BaseIntegrals => structure.base.integrals.iter().map(|i| jets(i) + 1).sum(),
         KernelId::Automatic => structure.base.automatic.len(),
-        KernelId::BaseConditions(case) => {
-            structure.cases[case].base_conditions.iter().map(|c| jets(&c.jets)).sum()
-        }
+        KernelId::BaseConditions(case) => structure.cases[case]
+            .base_conditions
+            .iter()
+            .map(|c| jets(&c.jets))
+            .sum(),
         KernelId::Divisors => structure.balances.len(),
         KernelId::Linear => structure.linear.len(),
         KernelId::Adjoint => structure.adjoint.len(),
         KernelId::Nonlinear => structure.form_coefficients,
-        KernelId::Conditions(case) => {
-            structure.cases[case].conditions.iter().map(|c| c.monomials.len()).sum()
-        }
+        KernelId::Conditions(case) => structure.cases[case]
+            .conditions
+            .iter()
+            .map(|c| c.monomials.len())
+            .sum(),
         KernelId::AdjointConditions(case) => match &structure.cases[case].adjoint {
             Ok(conditions) => conditions.iter().map(|c| c.jets.len()).sum(),
             Err(_) => 0,
         },
-        KernelId::Closures(case) => {
-            structure.cases[case].closures.iter().map(|c| c.density.len() + c.column.len()).sum()
-        }
+        KernelId::Closures(case) => structure.cases[case]
+            .closures
+            .iter()
+            .map(|c| c.density.len() + c.column.len())
+            .sum(),
         KernelId::Amplitude => match structure.amplitude.field {
             Some(_) => 2,
             None => structure.amplitude.weighted.len() + 1,
         },
-        KernelId::Outputs => structure.outputs.iter().map(|o| 1 + o.monomials.len()).sum(),
+        KernelId::Outputs => structure
+            .outputs
+            .iter()
+            .map(|o| 1 + o.monomials.len())
+            .sum(),
     }
 }
 

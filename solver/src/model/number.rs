@@ -264,7 +264,11 @@ impl<T: Number, const N: usize> Number for Truncated<T, N> {
     // d/dz z^q = q z^(q−1)
     fn powf(self, exponent: f64) -> Self {
         let value = self.0[0];
-        let head = if exponent == 0.5 { value.sqrt() } else { value.powf(exponent) };
+        let head = if exponent == 0.5 {
+            value.sqrt()
+        } else {
+            value.powf(exponent)
+        };
         let derivatives = Self::derivatives(head, |m, known| {
             known[m - 1] * (exponent - (m as f64 - 1.0)) / value
         });

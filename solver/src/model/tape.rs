@@ -1,6 +1,6 @@
 //! A model run from its spec without a build: the kernels' operations, interpreted.
 
-use super::{KernelId, Model, Number, ResidualCall, ResidualId, Structure, choose, C64};
+use super::{C64, KernelId, Model, Number, ResidualCall, ResidualId, Structure, choose};
 use landau_codegen::diagnostic::Diagnostics;
 use landau_codegen::graph::Function;
 use landau_codegen::kernel::{Kernel, ModelKernels, Operation};
@@ -26,7 +26,12 @@ impl TapeModel {
         let (derivation, kernels) = generate(sources)?;
         let files = derivation.model.sources.iter();
         let sources = files.map(|f| (f.path.clone(), f.text.clone())).collect();
-        let ModelKernels { structure, kernels, forms, residuals } = kernels;
+        let ModelKernels {
+            structure,
+            kernels,
+            forms,
+            residuals,
+        } = kernels;
         Ok(TapeModel {
             structure,
             sources,
@@ -48,14 +53,18 @@ impl Model for TapeModel {
 
     fn evaluate(&self, kernel: KernelId, point: &[f64], out: &mut [f64]) {
         thread_local!(static REGISTERS: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) });
-        let Some(kernel) = self.kernels.get(&kernel) else { return out.fill(0.0) };
+        let Some(kernel) = self.kernels.get(&kernel) else {
+            return out.fill(0.0);
+        };
         REGISTERS.with_borrow_mut(|registers| run(kernel, |_, i| point[i], registers));
         REGISTERS.with_borrow(|registers| copy_outputs(kernel, registers, out));
     }
 
     fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64 {
         thread_local!(static REGISTERS: RefCell<Vec<C64>> = const { RefCell::new(Vec::new()) });
-        let Some(kernel) = &self.forms[degree - 2][row] else { return C64::new(0.0, 0.0) };
+        let Some(kernel) = &self.forms[degree - 2][row] else {
+            return C64::new(0.0, 0.0);
+        };
         REGISTERS.with_borrow_mut(|registers| {
             let input = |array: usize, i: usize| match array {
                 0 => C64::from(c[i]),
@@ -67,7 +76,9 @@ impl Model for TapeModel {
     }
 
     fn residual(&self, residual: ResidualId, point: &[f64], call: ResidualCall<'_>) {
-        let Some(kernel) = self.residuals.get(&residual) else { return };
+        let Some(kernel) = self.residuals.get(&residual) else {
+            return;
+        };
         match call {
             ResidualCall::Real(x, out) => run_residual(kernel, point, x, out),
             ResidualCall::Complex(x, out) => run_residual(kernel, point, x, out),

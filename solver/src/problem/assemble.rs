@@ -23,7 +23,13 @@ impl LinearProblem {
         column_turns: Vec<usize>,
         row_turns: Vec<usize>,
     ) -> Self {
-        LinearProblem { layout, terms, walls, column_turns, row_turns }
+        LinearProblem {
+            layout,
+            terms,
+            walls,
+            column_turns,
+            row_turns,
+        }
     }
 
     /// The factor of a jet at wavenumber k in the solver's basis, its row turned by `row_turn`.
@@ -70,7 +76,13 @@ impl LinearProblem {
     ) -> Mat<T> {
         let n = self.layout.size;
         let mut matrix = Mat::<T>::zeros(n, n);
-        self.add(&mut matrix, discretisation, scale, combination, |jet, row| self.symbol(jet, k, row));
+        self.add(
+            &mut matrix,
+            discretisation,
+            scale,
+            combination,
+            |jet, row| self.symbol(jet, k, row),
+        );
         matrix
     }
 
@@ -84,10 +96,16 @@ impl LinearProblem {
     ) -> Mat<T> {
         let n = self.layout.size;
         let mut matrix = Mat::<T>::zeros(n, n);
-        self.add(&mut matrix, discretisation, scale, combination, |jet, row| {
-            let power = f64::from(jet.x) + f64::from(jet.absx);
-            self.symbol(jet, k, row) * (power / k)
-        });
+        self.add(
+            &mut matrix,
+            discretisation,
+            scale,
+            combination,
+            |jet, row| {
+                let power = f64::from(jet.x) + f64::from(jet.absx);
+                self.symbol(jet, k, row) * (power / k)
+            },
+        );
         matrix
     }
 
@@ -106,7 +124,11 @@ impl LinearProblem {
             if column >= self.layout.columns.len() {
                 continue;
             }
-            let weight = if jet.t > 0 { combination.mass } else { combination.operator };
+            let weight = if jet.t > 0 {
+                combination.mass
+            } else {
+                combination.operator
+            };
             if weight == C64::new(0.0, 0.0) {
                 continue;
             }
@@ -115,7 +137,9 @@ impl LinearProblem {
                 continue;
             }
             let key = (*row, column, usize::from(jet.y));
-            let sum = sums.entry(key).or_insert_with(|| vec![C64::new(0.0, 0.0); coefficient.len()]);
+            let sum = sums
+                .entry(key)
+                .or_insert_with(|| vec![C64::new(0.0, 0.0); coefficient.len()]);
             for (s, c) in sum.iter_mut().zip(coefficient) {
                 *s += factor * *c;
             }
@@ -149,11 +173,18 @@ impl LinearProblem {
         for (index, wall) in self.walls.iter().enumerate() {
             let row = self.layout.walls + index;
             let turn = self.wall_turn(wall);
-            let to = if wall.end == End::Lower { GridKind::Lower } else { GridKind::Upper };
+            let to = if wall.end == End::Lower {
+                GridKind::Lower
+            } else {
+                GridKind::Upper
+            };
             for (jet, coefficient) in &wall.linear {
-                let Some(columns) = self.layout.columns.get(usize::from(jet.field)) else { continue };
+                let Some(columns) = self.layout.columns.get(usize::from(jet.field)) else {
+                    continue;
+                };
                 let derivative = discretisation.matrix(columns.grid, to, usize::from(jet.y));
-                let factor = symbol(*jet, turn) * (weight * coefficient * scale.powi(i32::from(jet.y)));
+                let factor =
+                    symbol(*jet, turn) * (weight * coefficient * scale.powi(i32::from(jet.y)));
                 for j in 0..columns.len {
                     let entry = &mut matrix[(row, columns.offset + j)];
                     *entry += T::from_complex(factor * derivative[(0, j)]);
@@ -176,15 +207,28 @@ impl Problem<'_> {
     /// M0 at wavenumber k.
     pub fn mass<T: Scalar>(&self, k: f64) -> Mat<T> {
         let (zero, one) = (C64::new(0.0, 0.0), C64::new(1.0, 0.0));
-        let mass = Combination { mass: one, operator: zero, walls: 0.0 };
-        self.direct.matrix(self.discretisation, self.scale(), k, mass)
+        let mass = Combination {
+            mass: one,
+            operator: zero,
+            walls: 0.0,
+        };
+        self.direct
+            .matrix(self.discretisation, self.scale(), k, mass)
     }
 
     /// The same for the adjoint problem.
     pub fn pencil_of<T: Scalar>(&self, problem: &LinearProblem, k: f64) -> (Mat<T>, Mat<T>) {
         let (zero, one) = (C64::new(0.0, 0.0), C64::new(1.0, 0.0));
-        let operator = Combination { mass: zero, operator: one, walls: 1.0 };
-        let mass = Combination { mass: one, operator: zero, walls: 0.0 };
+        let operator = Combination {
+            mass: zero,
+            operator: one,
+            walls: 1.0,
+        };
+        let mass = Combination {
+            mass: one,
+            operator: zero,
+            walls: 0.0,
+        };
         (
             problem.matrix(self.discretisation, self.scale(), k, operator),
             problem.matrix(self.discretisation, self.scale(), k, mass),
@@ -193,9 +237,19 @@ impl Problem<'_> {
 
     /// σ M0 − L, with the boundary conditions as rows; bordered at k = 0.
     pub fn shifted<T: Scalar>(&self, k: f64, shift: C64) -> Mat<T> {
-        let combination = Combination { mass: shift, operator: C64::new(-1.0, 0.0), walls: 1.0 };
-        let matrix = self.direct.matrix(self.discretisation, self.scale(), k, combination);
-        if k == 0.0 { self.bordered(matrix) } else { matrix }
+        let combination = Combination {
+            mass: shift,
+            operator: C64::new(-1.0, 0.0),
+            walls: 1.0,
+        };
+        let matrix = self
+            .direct
+            .matrix(self.discretisation, self.scale(), k, combination);
+        if k == 0.0 {
+            self.bordered(matrix)
+        } else {
+            matrix
+        }
     }
 
     /// L and M0 at k = 0 with the borders of the closures.
@@ -204,7 +258,11 @@ impl Problem<'_> {
         let n = mass.nrows();
         let size = n + self.borders.len();
         let mass = Mat::from_fn(size, size, |i, j| {
-            if i < n && j < n { mass[(i, j)] } else { T::from_complex(C64::new(0.0, 0.0)) }
+            if i < n && j < n {
+                mass[(i, j)]
+            } else {
+                T::from_complex(C64::new(0.0, 0.0))
+            }
         });
         (self.bordered(operator), mass)
     }

@@ -27,23 +27,39 @@ pub fn borders(
     let case = &structure.cases[base.case];
     let kernel = KernelId::Closures(base.case);
     let point = structure.coordinate.is_none();
-    let half = if point { 0.5 } else { 0.5 * (base.upper - base.lower) };
+    let half = if point {
+        0.5
+    } else {
+        0.5 * (base.upper - base.lower)
+    };
     let longest = layout.columns.iter().map(|b| b.len).max().unwrap_or(1);
-    let quadrature = if point { GridKind::Point } else { GridKind::Lobatto(2 * longest + 1) };
+    let quadrature = if point {
+        GridKind::Point
+    } else {
+        GridKind::Lobatto(2 * longest + 1)
+    };
     let nodes = Grid::new(quadrature).nodes;
     let weights = clenshaw_curtis(nodes.len());
-    let values: Vec<Vec<f64>> =
-        nodes.iter().map(|&xi| evaluate(model, kernel, &base.point(model, xi, 0.0))).collect();
+    let values: Vec<Vec<f64>> = nodes
+        .iter()
+        .map(|&xi| evaluate(model, kernel, &base.point(model, xi, 0.0)))
+        .collect();
     let mut borders = Vec::new();
     let mut position = 0;
     for closure in &case.closures {
         let mut row = vec![0.0; layout.size];
         for (offset, jet) in closure.density.iter().enumerate() {
             let field = usize::from(jet.field);
-            let Some(block) = layout.columns.get(field) else { continue };
+            let Some(block) = layout.columns.get(field) else {
+                continue;
+            };
             let order = usize::from(jet.y);
             let matrix = discretisation.matrix(block.grid, quadrature, order);
-            let scale = if point { 1.0 } else { base.scale().powi(order as i32) };
+            let scale = if point {
+                1.0
+            } else {
+                base.scale().powi(order as i32)
+            };
             for (q, weight) in weights.iter().enumerate() {
                 let factor = weight * half * values[q][position + offset] * scale;
                 for j in 0..block.len {
@@ -64,7 +80,12 @@ pub fn borders(
         if closure.kind == ClosureKind::Unknown {
             unknown_column(model, base, layout, closure.field, &mut column);
         }
-        borders.push(Border { kind: closure.kind, field: closure.field, row, column });
+        borders.push(Border {
+            kind: closure.kind,
+            field: closure.field,
+            row,
+            column,
+        });
     }
     borders
 }

@@ -21,8 +21,12 @@ pub fn direct(model: &dyn Model, base: &BaseState) -> Vec<WallRow> {
     let mut position = 0;
     let mut rows = Vec::new();
     for condition in &case.conditions {
-        let mut row =
-            WallRow { end: condition.end, owner: condition.field, linear: Vec::new(), nonlinear: Vec::new() };
+        let mut row = WallRow {
+            end: condition.end,
+            owner: condition.field,
+            linear: Vec::new(),
+            nonlinear: Vec::new(),
+        };
         for monomial in &condition.monomials {
             let coefficient = values[usize::from(condition.end == End::Upper)][position];
             position += 1;
@@ -47,10 +51,18 @@ pub fn adjoint(model: &dyn Model, base: &BaseState) -> Result<Vec<WallRow>, Stri
     for condition in conditions {
         let mut linear = Vec::new();
         for jet in &condition.jets {
-            linear.push((*jet, values[usize::from(condition.end == End::Upper)][position]));
+            linear.push((
+                *jet,
+                values[usize::from(condition.end == End::Upper)][position],
+            ));
             position += 1;
         }
-        rows.push(WallRow { end: condition.end, owner: condition.balance, linear, nonlinear: Vec::new() });
+        rows.push(WallRow {
+            end: condition.end,
+            owner: condition.balance,
+            linear,
+            nonlinear: Vec::new(),
+        });
     }
     Ok(rows)
 }

@@ -61,7 +61,10 @@ impl Points<'_> {
             Some(position) => position,
             None => {
                 let nodes = Grid::new(grid).nodes;
-                let states = nodes.iter().map(|&xi| self.base.point(self.model, xi, 0.0)).collect();
+                let states = nodes
+                    .iter()
+                    .map(|&xi| self.base.point(self.model, xi, 0.0))
+                    .collect();
                 self.known.push((grid, states));
                 self.known.len() - 1
             }
@@ -81,23 +84,41 @@ impl<'m> Problem<'m> {
         discretisation: &'m Discretisation,
         resolution: usize,
     ) -> Result<Self> {
-        let mut points = Points { model, base, known: Vec::new() };
+        let mut points = Points {
+            model,
+            base,
+            known: Vec::new(),
+        };
         let direct = Self::direct(&mut points, resolution)?;
         let borders = closure::borders(model, base, &direct.layout, discretisation);
         let mut nonlinear: Vec<Vec<Vec<f64>>> = Vec::new();
         for (row, block) in direct.layout.rows.iter().enumerate() {
-            let twin = direct.layout.rows[..row].iter().position(|b| b.grid == block.grid);
+            let twin = direct.layout.rows[..row]
+                .iter()
+                .position(|b| b.grid == block.grid);
             nonlinear.push(match twin {
                 Some(twin) => nonlinear[twin].clone(),
                 None => {
                     let states = points.at(block.grid).iter();
-                    states.map(|p| evaluate(model, KernelId::Nonlinear, p)).collect()
+                    states
+                        .map(|p| evaluate(model, KernelId::Nonlinear, p))
+                        .collect()
                 }
             });
         }
         let gram = gram(model, base, &direct.layout, discretisation, resolution);
         let adjoint = OnceLock::new();
-        Ok(Problem { model, base, resolution, discretisation, direct, adjoint, borders, nonlinear, gram })
+        Ok(Problem {
+            model,
+            base,
+            resolution,
+            discretisation,
+            direct,
+            adjoint,
+            borders,
+            nonlinear,
+            gram,
+        })
     }
 
     /// The adjoint problem, discretised on its own.
@@ -106,7 +127,11 @@ impl<'m> Problem<'m> {
     /// Why the model has no adjoint boundary conditions.
     pub fn adjoint(&self) -> Result<&LinearProblem> {
         let made = self.adjoint.get_or_init(|| {
-            let mut points = Points { model: self.model, base: self.base, known: Vec::new() };
+            let mut points = Points {
+                model: self.model,
+                base: self.base,
+                known: Vec::new(),
+            };
             Self::adjoint_problem(&mut points, self.resolution)
         });
         made.as_ref().map_err(Clone::clone)
@@ -117,12 +142,19 @@ impl<'m> Problem<'m> {
         let structure = model.structure();
         let walls = conditions::direct(model, base);
         let profiles = structure.profiles();
-        let counts: Vec<usize> =
-            (0..profiles).map(|f| walls.iter().filter(|w| w.owner == f).count()).collect();
+        let counts: Vec<usize> = (0..profiles)
+            .map(|f| walls.iter().filter(|w| w.owner == f).count())
+            .collect();
         let layout = layout(structure, &counts, &structure.pairing, resolution)?;
         let (column_turns, row_turns) = turns(structure);
         let terms = terms(points, &layout, KernelId::Linear)?;
-        Ok(LinearProblem::new(layout, terms, walls, column_turns, row_turns))
+        Ok(LinearProblem::new(
+            layout,
+            terms,
+            walls,
+            column_turns,
+            row_turns,
+        ))
     }
 
     fn adjoint_problem(points: &mut Points, resolution: usize) -> Result<LinearProblem> {
@@ -134,12 +166,19 @@ impl<'m> Problem<'m> {
         let pairing: Vec<usize> = (0..profiles)
             .map(|f| structure.pairing.iter().position(|&p| p == f).unwrap_or(f))
             .collect();
-        let counts: Vec<usize> =
-            (0..profiles).map(|b| walls.iter().filter(|w| w.owner == b).count()).collect();
+        let counts: Vec<usize> = (0..profiles)
+            .map(|b| walls.iter().filter(|w| w.owner == b).count())
+            .collect();
         let layout = layout(structure, &counts, &pairing, resolution)?;
         let (column_turns, row_turns) = turns(structure);
         let terms = terms(points, &layout, KernelId::Adjoint)?;
-        Ok(LinearProblem::new(layout, terms, walls, row_turns, column_turns))
+        Ok(LinearProblem::new(
+            layout,
+            terms,
+            walls,
+            row_turns,
+            column_turns,
+        ))
     }
 
     pub fn structure(&self) -> &Structure {
@@ -154,7 +193,13 @@ impl<'m> Problem<'m> {
     /// Physical values of the unknowns from those in the solver's basis.
     pub fn physical<T: crate::dense::Scalar>(&self, x: &[T]) -> Vec<C64> {
         let mut values = vec![C64::new(0.0, 0.0); self.direct.layout.size];
-        for (block, &turn) in self.direct.layout.columns.iter().zip(&self.direct.column_turns) {
+        for (block, &turn) in self
+            .direct
+            .layout
+            .columns
+            .iter()
+            .zip(&self.direct.column_turns)
+        {
             for i in block.offset..block.offset + block.len {
                 values[i] = x[i].complex() * quarter_turn(turn);
             }
@@ -164,7 +209,11 @@ impl<'m> Problem<'m> {
 
     /// dξ/dy, or 1 without a cross-stream coordinate.
     pub fn scale(&self) -> f64 {
-        if self.resolution == 0 { 1.0 } else { self.base.scale() }
+        if self.resolution == 0 {
+            1.0
+        } else {
+            self.base.scale()
+        }
     }
 }
 
@@ -186,7 +235,10 @@ fn layout(
 ) -> Result<Layout> {
     let most = counts.iter().copied().max().unwrap_or(0);
     if structure.coordinate.is_some() && resolution < most + 2 {
-        return Err(Error::input(format!("M = {resolution} is too small: at least {}", most + 2)));
+        return Err(Error::input(format!(
+            "M = {resolution} is too small: at least {}",
+            most + 2
+        )));
     }
     let resolution = structure.coordinate.is_some().then_some(resolution);
     Ok(Layout::new(counts, pairing, resolution))
@@ -211,7 +263,11 @@ fn terms(
 ) -> Result<Vec<(usize, Jet, Vec<f64>)>> {
     let (model, base) = (points.model, points.base);
     let structure = model.structure();
-    let infos = if kernel == KernelId::Linear { &structure.linear } else { &structure.adjoint };
+    let infos = if kernel == KernelId::Linear {
+        &structure.linear
+    } else {
+        &structure.adjoint
+    };
     let mut terms: Vec<(usize, Jet, Vec<f64>)> =
         infos.iter().map(|t| (t.row, t.jet, Vec::new())).collect();
     let mut cache: Vec<(GridKind, Vec<Vec<f64>>)> = Vec::new();
@@ -221,7 +277,9 @@ fn terms(
             let values: Vec<Vec<f64>> = states.map(|p| evaluate(model, kernel, p)).collect();
             cache.push((block.grid, values));
         }
-        let Some((_, values)) = cache.iter().find(|(kind, _)| *kind == block.grid) else { continue };
+        let Some((_, values)) = cache.iter().find(|(kind, _)| *kind == block.grid) else {
+            continue;
+        };
         for (index, term) in terms.iter_mut().enumerate().filter(|(_, t)| t.0 == row) {
             term.2 = values.iter().map(|v| v[index]).collect();
             if let Some(bad) = term.2.iter().position(|c| !c.is_finite()) {
@@ -249,7 +307,10 @@ fn gram(
     let fields = &model.structure().amplitude.weighted;
     let (grid, half) = match resolution {
         0 => (GridKind::Point, 0.5),
-        m => (GridKind::Lobatto(3 * m + 1), 0.5 * (base.upper - base.lower)),
+        m => (
+            GridKind::Lobatto(3 * m + 1),
+            0.5 * (base.upper - base.lower),
+        ),
     };
     if fields.is_empty() {
         return Vec::new();

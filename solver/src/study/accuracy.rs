@@ -29,13 +29,17 @@ pub struct Resonance {
 /// # Errors
 /// A finer problem that cannot be solved.
 pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Accuracy> {
-    let mut found = Accuracy { c0: 1e-15 * point.c0.norm(), c2: 1e-14 * point.c2.norm() };
+    let mut found = Accuracy {
+        c0: 1e-15 * point.c0.norm(),
+        c2: 1e-14 * point.c2.norm(),
+    };
     let k = point.expansion.k;
     if setup.effective_resolution() > 0 {
         let mut finer = setup.clone();
         finer.resolution = setup.resolution + setup.resolution.div_ceil(2);
-        let (c0, c2) = finer
-            .with_point(base, k, Selection::Near(point.c0), |finer| Ok((finer.c0, finer.c2)))?;
+        let (c0, c2) = finer.with_point(base, k, Selection::Near(point.c0), |finer| {
+            Ok((finer.c0, finer.c2))
+        })?;
         found.c0 = found.c0.max((c0 - point.c0).norm());
         found.c2 = found.c2.max((c2 - point.c2).norm());
     }
@@ -59,6 +63,11 @@ pub fn resonance(point: &LandauPoint) -> Result<Resonance> {
     let mean = spectrum::eigenvalues(problem, 0.0);
     let second = spectrum::eigenvalues(problem, 2.0 * point.expansion.k)?;
     // A model whose mean modes are all closed by integrals has no mean spectrum to meet.
-    let mean_flow = mean.map_or(f64::INFINITY, |mean| distance(C64::new(2.0 * point.c0.re, 0.0), &mean));
-    Ok(Resonance { mean_flow, second_harmonic: distance(2.0 * point.c0, &second) })
+    let mean_flow = mean.map_or(f64::INFINITY, |mean| {
+        distance(C64::new(2.0 * point.c0.re, 0.0), &mean)
+    });
+    Ok(Resonance {
+        mean_flow,
+        second_harmonic: distance(2.0 * point.c0, &second),
+    })
 }

@@ -61,7 +61,11 @@ struct Sampler<'s, 'm> {
 
 impl Sampler<'_, '_> {
     fn k(&self, x: f64) -> f64 {
-        if self.question.axis == Axis::Wavenumber { x } else { self.question.k }
+        if self.question.axis == Axis::Wavenumber {
+            x
+        } else {
+            self.question.k
+        }
     }
 
     fn sample(&self, x: f64, near: Option<&Carried>) -> Result<Sample> {
@@ -83,9 +87,21 @@ impl Sampler<'_, '_> {
             }
             let point = weakly::from_pair(problem, pair.clone())?;
             let c2 = point.c2.re;
-            Ok((if self.question.quantity == Quantity::C2 { c2 } else { 1.0 / c2 }, pair))
+            Ok((
+                if self.question.quantity == Quantity::C2 {
+                    c2
+                } else {
+                    1.0 / c2
+                },
+                pair,
+            ))
         })?;
-        Ok(Sample { x, value, c0: pair.c, carried: Carried { base, pair } })
+        Ok(Sample {
+            x,
+            value,
+            c0: pair.c,
+            carried: Carried { base, pair },
+        })
     }
 
     /// The mode that is most unstable somewhere in the interval.
@@ -138,7 +154,9 @@ impl Sampler<'_, '_> {
         let near = |x: f64, last: &Sample| {
             // Follow from whichever known sample is nearest.
             let candidates = [a, b, last];
-            let nearest = candidates.iter().min_by(|p, q| (p.x - x).abs().total_cmp(&(q.x - x).abs()));
+            let nearest = candidates
+                .iter()
+                .min_by(|p, q| (p.x - x).abs().total_cmp(&(q.x - x).abs()));
             nearest.map_or(a.carried.clone(), |s| s.carried.clone())
         };
         let evaluate = |x: f64| {
@@ -150,7 +168,11 @@ impl Sampler<'_, '_> {
             return Ok(None);
         }
         let root = self.sample(x, Some(&near(x, a)))?;
-        Ok(Some(Critical { value: x, k: self.k(x), c0: root.c0 }))
+        Ok(Some(Critical {
+            value: x,
+            k: self.k(x),
+            c0: root.c0,
+        }))
     }
 }
 
@@ -158,7 +180,11 @@ impl Sampler<'_, '_> {
 ///
 /// # Errors
 /// An interval without one, or a mode that cannot be followed.
-pub fn critical(setup: &Setup, question: Question, progress: &ProgressBar) -> Result<Vec<Critical>> {
+pub fn critical(
+    setup: &Setup,
+    question: Question,
+    progress: &ProgressBar,
+) -> Result<Vec<Critical>> {
     let sampler = Sampler { setup, question };
     let points: Vec<f64> = (0..SCAN)
         .map(|i| question.from + (question.to - question.from) * i as f64 / (SCAN - 1) as f64)
@@ -206,7 +232,10 @@ pub fn minimise(
         let pair = moved.with_problem(&base, |problem| {
             crest(problem, near.as_ref(), question.near, (from, to))
         })?;
-        *carried = Some(Carried { base, pair: pair.clone() });
+        *carried = Some(Carried {
+            base,
+            pair: pair.clone(),
+        });
         Ok((pair.c.re, pair))
     };
     let mut previous: Option<(f64, f64, Option<Carried>)> = None;
@@ -215,17 +244,31 @@ pub fn minimise(
         let x = question.from + (question.to - question.from) * step as f64 / steps as f64;
         // Each scan point looks over the whole range of k, in case another mode takes over.
         let mut fresh = None;
-        let Ok((growth, _)) = peak(x, &mut fresh) else { continue };
+        let Ok((growth, _)) = peak(x, &mut fresh) else {
+            continue;
+        };
         if let Some((x0, g0, before)) = &previous
             && g0 * growth <= 0.0
         {
-            let mut carried = if growth.abs() < g0.abs() { fresh } else { before.clone() };
+            let mut carried = if growth.abs() < g0.abs() {
+                fresh
+            } else {
+                before.clone()
+            };
             let span = TOLERANCE * x.abs().max(x0.abs());
-            let (root, _) =
-                brent(|x| peak(x, &mut carried).map(|(g, _)| g), (*x0, *g0), (x, growth), span)?;
+            let (root, _) = brent(
+                |x| peak(x, &mut carried).map(|(g, _)| g),
+                (*x0, *g0),
+                (x, growth),
+                span,
+            )?;
             let (_, pair) = peak(root, &mut carried)?;
             progress.finish_and_clear();
-            return Ok(Critical { value: root, k: pair.k, c0: pair.c });
+            return Ok(Critical {
+                value: root,
+                k: pair.k,
+                c0: pair.c,
+            });
         }
         previous = Some((x, growth, fresh));
     }
@@ -251,7 +294,9 @@ fn crest(
             for step in 0..=steps {
                 let k = from + spacing * step as f64;
                 let selection = target.map_or(Selection::Leading, Selection::Near);
-                let Ok(pair) = weakly::select(problem, k, selection) else { continue };
+                let Ok(pair) = weakly::select(problem, k, selection) else {
+                    continue;
+                };
                 if best.as_ref().is_none_or(|b| pair.c.re > b.c.re) {
                     best = Some(pair);
                 }
@@ -266,13 +311,18 @@ fn crest(
     };
     // Bracket the extremum around the start.
     let first = slope(start.k)?;
-    let mut reach = if near.is_some() { 1e-3 * start.k } else { spacing };
+    let mut reach = if near.is_some() {
+        1e-3 * start.k
+    } else {
+        spacing
+    };
     let side = first.signum();
     let (mut a, mut fa) = (start.k, first);
     for _ in 0..60 {
         let b = (a + side * reach).clamp(from, to);
         if b == a {
-            let message = format!("the growth rate has its largest value at the end k = {a} of the range");
+            let message =
+                format!("the growth rate has its largest value at the end k = {a} of the range");
             return Err(Error::computation(message));
         }
         let fb = slope(b)?;

@@ -48,7 +48,9 @@ impl Axis {
         let structure = model.structure();
         let index = Parameters::index(structure, name)?;
         if !structure.parameters[index].choices.is_empty() {
-            return Err(Error::input(format!("`{name}` is a switch: it cannot vary continuously")));
+            return Err(Error::input(format!(
+                "`{name}` is a switch: it cannot vary continuously"
+            )));
         }
         Ok(Axis::Parameter(index))
     }
@@ -59,12 +61,21 @@ impl<'m> Setup<'m> {
     pub fn new(model: &'m dyn Model, resolution: usize) -> Self {
         let parameters = Parameters::defaults(model.structure());
         let discretisation = Arc::new(Discretisation::new());
-        Setup { model, parameters, resolution, discretisation }
+        Setup {
+            model,
+            parameters,
+            resolution,
+            discretisation,
+        }
     }
 
     /// The resolution to collocate with: 0 without a cross-stream coordinate.
     pub fn effective_resolution(&self) -> usize {
-        if self.model.structure().coordinate.is_some() { self.resolution } else { 0 }
+        if self.model.structure().coordinate.is_some() {
+            self.resolution
+        } else {
+            0
+        }
     }
 
     /// The setup with one coordinate moved.
@@ -98,7 +109,9 @@ impl<'m> Setup<'m> {
         selection: Selection,
         study: impl FnOnce(&LandauPoint) -> Result<R>,
     ) -> Result<R> {
-        self.with_problem(base, |problem| study(&weakly::point(problem, k, selection)?))
+        self.with_problem(base, |problem| {
+            study(&weakly::point(problem, k, selection)?)
+        })
     }
 
     /// Calls `study` with the collocated problem.
@@ -111,7 +124,12 @@ impl<'m> Setup<'m> {
         study: impl FnOnce(&Problem) -> Result<R>,
     ) -> Result<R> {
         let resolution = self.effective_resolution();
-        study(&Problem::new(self.model, base, &self.discretisation, resolution)?)
+        study(&Problem::new(
+            self.model,
+            base,
+            &self.discretisation,
+            resolution,
+        )?)
     }
 }
 
@@ -130,10 +148,15 @@ pub fn check_wavenumber(k: f64) -> Result<()> {
     if k.is_finite() && k > 0.0 {
         return Ok(());
     }
-    Err(Error::input(format!("k = {k} is not a wavenumber: it has to be a positive number")))
+    Err(Error::input(format!(
+        "k = {k} is not a wavenumber: it has to be a positive number"
+    )))
 }
 
 /// Smallest distance between a number and the members of a spectrum.
 pub fn distance(target: C64, spectrum: &[C64]) -> f64 {
-    spectrum.iter().map(|c| (c - target).norm()).fold(f64::INFINITY, f64::min)
+    spectrum
+        .iter()
+        .map(|c| (c - target).norm())
+        .fold(f64::INFINITY, f64::min)
 }

@@ -27,7 +27,9 @@ pub fn adjoint_mode(problem: &Problem, k: f64, c0: C64) -> Result<AdjointMode> {
     let n = mass.nrows();
     let shifted = faer::Mat::from_fn(n, n, |i, j| shift * mass[(i, j)] - operator[(i, j)]);
     let factorised = Factorised::new(shifted);
-    let mut x: Vec<C64> = (0..n).map(|i| C64::new(1.0 + 0.3 * (i as f64).sin(), 0.0)).collect();
+    let mut x: Vec<C64> = (0..n)
+        .map(|i| C64::new(1.0 + 0.3 * (i as f64).sin(), 0.0))
+        .collect();
     let (mut c, mut change) = (shift, f64::INFINITY);
     for iteration in 0..60 {
         let mass_x = apply(mass.as_ref(), &x);
@@ -44,11 +46,16 @@ pub fn adjoint_mode(problem: &Problem, k: f64, c0: C64) -> Result<AdjointMode> {
         c = estimate;
         let floor = 1e-13 * c.norm().max((shift - c).norm());
         if iteration > 1 && (step <= floor || (step < 1e-9 * c.norm() && step >= 0.5 * change)) {
-            return Ok(AdjointMode { c, values: physical(adjoint, &x) });
+            return Ok(AdjointMode {
+                c,
+                values: physical(adjoint, &x),
+            });
         }
         change = step;
     }
-    Err(Error::computation(format!("the adjoint mode at k = {k} was not found; try a larger M")))
+    Err(Error::computation(format!(
+        "the adjoint mode at k = {k} was not found; try a larger M"
+    )))
 }
 
 fn physical(problem: &LinearProblem, x: &[C64]) -> Vec<C64> {
@@ -81,12 +88,26 @@ pub fn second_landau(point: &LandauPoint, adjoint: &AdjointMode) -> Result<Optio
     let jets = &structure.form_jets;
     let table = |mode: &Mode| mode.jets(problem, k, jets, grid);
     let (j1, j1c, j0, j2) = (table(first), table(&conjugate), table(mean), table(second));
-    let mass: Vec<_> = structure.linear.iter().enumerate().filter(|(_, t)| t.jet.t > 0).collect();
+    let mass: Vec<_> = structure
+        .linear
+        .iter()
+        .enumerate()
+        .filter(|(_, t)| t.jet.t > 0)
+        .collect();
     let mass_jets: Vec<Jet> = mass.iter().map(|(_, t)| Jet { t: 0, ..t.jet }).collect();
-    let mass_values: Vec<Vec<C64>> =
-        mass_jets.iter().map(|&jet| first.jet(problem, k, jet, grid)).collect();
+    let mass_values: Vec<Vec<C64>> = mass_jets
+        .iter()
+        .map(|&jet| first.jet(problem, k, jet, grid))
+        .collect();
     let profiles: Vec<Vec<C64>> = (0..layout.columns.len())
-        .map(|row| on_grid(problem, layout.columns[row].grid, grid, &adjoint.values[layout.columns[row].offset..][..layout.columns[row].len]))
+        .map(|row| {
+            on_grid(
+                problem,
+                layout.columns[row].grid,
+                grid,
+                &adjoint.values[layout.columns[row].offset..][..layout.columns[row].len],
+            )
+        })
         .collect();
     let (mut above, mut below) = (C64::new(0.0, 0.0), C64::new(0.0, 0.0));
     let empty: &[C64] = &[];
@@ -94,7 +115,9 @@ pub fn second_landau(point: &LandauPoint, adjoint: &AdjointMode) -> Result<Optio
         let base = problem.base.point(problem.model, xi, k);
         let c = evaluate(problem.model, KernelId::Nonlinear, &base);
         let linear = evaluate(problem.model, KernelId::Linear, &base);
-        let row_of = |table: &Vec<Vec<C64>>| -> Vec<C64> { table.get(i).cloned().unwrap_or_else(|| empty.to_vec()) };
+        let row_of = |table: &Vec<Vec<C64>>| -> Vec<C64> {
+            table.get(i).cloned().unwrap_or_else(|| empty.to_vec())
+        };
         let (x, xc, m, s) = (row_of(&j1), row_of(&j1c), row_of(&j0), row_of(&j2));
         for (row, profile) in profiles.iter().enumerate() {
             // G[1;3] = 2 N2(X11, X02) + 2 N2(X̄11, X22) + 3 N3(X11, X11, X̄11)
@@ -119,6 +142,12 @@ pub fn second_landau(point: &LandauPoint, adjoint: &AdjointMode) -> Result<Optio
 pub fn on_grid(problem: &Problem, from: GridKind, to: GridKind, values: &[C64]) -> Vec<C64> {
     let matrix = problem.discretisation.matrix(from, to, 0);
     (0..matrix.nrows())
-        .map(|i| values.iter().enumerate().map(|(j, v)| v * matrix[(i, j)]).sum())
+        .map(|i| {
+            values
+                .iter()
+                .enumerate()
+                .map(|(j, v)| v * matrix[(i, j)])
+                .sum()
+        })
         .collect()
 }

@@ -37,7 +37,10 @@ pub fn brent(
                 (2.0 * half * s, 1.0 - s)
             } else {
                 let (q, r) = (fa / fc, fb / fc);
-                (s * (2.0 * half * q * (q - r) - (b - a) * (r - 1.0)), (q - 1.0) * (r - 1.0) * (s - 1.0))
+                (
+                    s * (2.0 * half * q * (q - r) - (b - a) * (r - 1.0)),
+                    (q - 1.0) * (r - 1.0) * (s - 1.0),
+                )
             };
             if p > 0.0 {
                 q = -q;
@@ -55,7 +58,11 @@ pub fn brent(
             e = d;
         }
         (a, fa) = (b, fb);
-        b += if d.abs() > near { d } else { near.copysign(half) };
+        b += if d.abs() > near {
+            d
+        } else {
+            near.copysign(half)
+        };
         fb = f(b)?;
     }
     Err(Error::computation(format!("no root was found near {b}")))

@@ -71,7 +71,11 @@ fn rayleigh(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Result<C64> {
 
 /// dc0/dk, exactly: k enters through (ik)^a |k|^b alone.
 pub fn wavenumber(problem: &Problem, pair: &EigenPair) -> C64 {
-    let combination = Combination { mass: -pair.c, operator: C64::new(1.0, 0.0), walls: 1.0 };
+    let combination = Combination {
+        mass: -pair.c,
+        operator: C64::new(1.0, 0.0),
+        walls: 1.0,
+    };
     let derivative = problem.direct.wavenumber_derivative::<C64>(
         problem.discretisation,
         problem.scale(),

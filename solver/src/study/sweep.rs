@@ -88,7 +88,9 @@ impl Sweep<'_, '_> {
     /// Files that cannot be written.
     pub fn run_to(&self, out: &Path, progress: &ProgressBar) -> Result<Vec<Row>> {
         let journal = Journal::open(out, &self.fingerprint())?;
-        let rows = self.run_chunks(&journal.known, progress, &|chunk, rows| journal.record(chunk, rows));
+        let rows = self.run_chunks(&journal.known, progress, &|chunk, rows| {
+            journal.record(chunk, rows)
+        });
         write_whole(out, &self.csv(&rows)?)?;
         journal.remove();
         Ok(rows)
@@ -128,23 +130,42 @@ impl Sweep<'_, '_> {
             others.push(range.values[line % range.values.len()]);
             line /= range.values.len();
         }
-        let coordinates = |x: f64| std::iter::once(x).chain(others.iter().copied()).collect::<Vec<f64>>();
+        let coordinates = |x: f64| {
+            std::iter::once(x)
+                .chain(others.iter().copied())
+                .collect::<Vec<f64>>()
+        };
         let places: Vec<Vec<f64>> = points.iter().map(|&x| coordinates(x)).collect();
         if self.ranges[0].axis != Axis::Wavenumber {
             let step = |place: &[f64], near: Option<&Carried>| self.evaluate(place, near);
-            return follow(&places, |carried: &Carried| carried.pair.c.re, step, progress);
+            return follow(
+                &places,
+                |carried: &Carried| carried.pair.c.re,
+                step,
+                progress,
+            );
         }
         // One base state and one set of coefficients serve the whole line.
         let line = self.at(&places[0]).and_then(|(setup, _)| {
             let base = setup.base(None)?;
             setup.with_problem(&base, |problem| {
-                let step = |place: &[f64], near: Option<&EigenPair>| self.row(problem, place, place[0], near);
-                Ok(follow(&places, |pair: &EigenPair| pair.c.re, step, progress))
+                let step = |place: &[f64], near: Option<&EigenPair>| {
+                    self.row(problem, place, place[0], near)
+                };
+                Ok(follow(
+                    &places,
+                    |pair: &EigenPair| pair.c.re,
+                    step,
+                    progress,
+                ))
             })
         });
         line.unwrap_or_else(|error| {
             progress.inc(places.len() as u64);
-            places.into_iter().map(|place| failed(place, &error)).collect()
+            places
+                .into_iter()
+                .map(|place| failed(place, &error))
+                .collect()
         })
     }
 
@@ -165,8 +186,9 @@ impl Sweep<'_, '_> {
     fn evaluate(&self, place: &[f64], near: Option<&Carried>) -> Result<(Row, Carried)> {
         let (setup, k) = self.at(place)?;
         let base = setup.base(near.map(|c| &c.base))?;
-        let (row, pair) =
-            setup.with_problem(&base, |problem| self.row(problem, place, k, near.map(|c| &c.pair)))?;
+        let (row, pair) = setup.with_problem(&base, |problem| {
+            self.row(problem, place, k, near.map(|c| &c.pair))
+        })?;
         Ok((row, Carried { base, pair }))
     }
 
@@ -201,8 +223,17 @@ impl Sweep<'_, '_> {
     pub fn csv(&self, rows: &[Row]) -> Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
         let mut header: Vec<&str> = self.ranges.iter().map(|r| r.name.as_str()).collect();
-        header.extend(["c0_re", "c0_im", "c2_re", "c2_im", "amplitude", "bifurcation", "status"]);
-        let failure = |e: csv::Error| Error::computation(format!("the table cannot be written: {e}"));
+        header.extend([
+            "c0_re",
+            "c0_im",
+            "c2_re",
+            "c2_im",
+            "amplitude",
+            "bifurcation",
+            "status",
+        ]);
+        let failure =
+            |e: csv::Error| Error::computation(format!("the table cannot be written: {e}"));
         writer.write_record(&header).map_err(failure)?;
         let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
         for row in rows {
@@ -216,7 +247,9 @@ impl Sweep<'_, '_> {
             record.push(row.status.clone());
             writer.write_record(&record).map_err(failure)?;
         }
-        writer.into_inner().map_err(|e| Error::computation(e.to_string()))
+        writer
+            .into_inner()
+            .map_err(|e| Error::computation(e.to_string()))
     }
 
     /// What a journal must have been made for.
@@ -260,7 +293,9 @@ fn follow<C>(
     let mut rows: Vec<Option<Row>> = vec![None; places.len()];
     let mut carried: Option<C> = None;
     for index in order {
-        let outcome = seed.take().unwrap_or_else(|| step(&places[index], carried.as_ref()));
+        let outcome = seed
+            .take()
+            .unwrap_or_else(|| step(&places[index], carried.as_ref()));
         rows[index] = Some(match outcome {
             Ok((row, next)) => {
                 carried = Some(next);
@@ -303,12 +338,15 @@ impl Journal {
         let mut name = out.file_name().unwrap_or_default().to_os_string();
         name.push(".journal");
         let path = out.with_file_name(name);
-        let failure = |e: std::io::Error| Error::input(format!("{} cannot be written: {e}", path.display()));
+        let failure =
+            |e: std::io::Error| Error::input(format!("{} cannot be written: {e}", path.display()));
         let mut known = HashMap::new();
         let header = serde_json::to_string(fingerprint).unwrap_or_default();
         let mut valid = false;
         if let Ok(file) = File::open(&path) {
-            let mut lines = BufReader::new(file).lines().map_while(std::result::Result::ok);
+            let mut lines = BufReader::new(file)
+                .lines()
+                .map_while(std::result::Result::ok);
             valid = lines.next().as_deref() == Some(&header);
             if valid {
                 // A line cut off by an interruption does not parse, and is computed again.
@@ -322,18 +360,30 @@ impl Journal {
         let mut file = if valid {
             options.append(true).open(&path).map_err(failure)?
         } else {
-            options.write(true).create(true).truncate(true).open(&path).map_err(failure)?
+            options
+                .write(true)
+                .create(true)
+                .truncate(true)
+                .open(&path)
+                .map_err(failure)?
         };
         if valid {
             writeln!(file).map_err(failure)?;
         } else {
             writeln!(file, "{header}").map_err(failure)?;
         }
-        Ok(Journal { path, file: Mutex::new(file), known })
+        Ok(Journal {
+            path,
+            file: Mutex::new(file),
+            known,
+        })
     }
 
     fn record(&self, chunk: usize, rows: &[Row]) {
-        let finished = Finished { chunk, rows: rows.to_vec() };
+        let finished = Finished {
+            chunk,
+            rows: rows.to_vec(),
+        };
         if let (Ok(line), Ok(mut file)) = (serde_json::to_string(&finished), self.file.lock()) {
             // A journal that cannot be written costs the resumption, not the result.
             let _ = writeln!(file, "{line}").and_then(|()| file.flush());

@@ -32,15 +32,35 @@ pub struct Check {
 }
 
 impl Check {
-    fn below(part: usize, name: impl Into<String>, value: f64, bound: f64, detail: impl Into<String>) -> Self {
+    fn below(
+        part: usize,
+        name: impl Into<String>,
+        value: f64,
+        bound: f64,
+        detail: impl Into<String>,
+    ) -> Self {
         let passed = value.is_finite() && value <= bound;
-        Check { part, name: name.into(), value, bound, passed, detail: detail.into() }
+        Check {
+            part,
+            name: name.into(),
+            value,
+            bound,
+            passed,
+            detail: detail.into(),
+        }
     }
 
     /// Reported, not judged.
     fn report(part: usize, name: impl Into<String>, value: f64, detail: impl Into<String>) -> Self {
         let passed = value.is_finite();
-        Check { part, name: name.into(), value, bound: f64::INFINITY, passed, detail: detail.into() }
+        Check {
+            part,
+            name: name.into(),
+            value,
+            bound: f64::INFINITY,
+            passed,
+            detail: detail.into(),
+        }
     }
 }
 
@@ -67,7 +87,12 @@ pub fn verify(setup: &Setup, k: f64, selection: Selection) -> Result<Vec<Check>>
 fn routes(point: &LandauPoint) -> Result<Vec<Check>> {
     let problem = point.expansion.problem;
     if let Err(reason) = problem.adjoint() {
-        return Ok(vec![Check::report(3, "continuous adjoint", 0.0, format!("left out: {reason}"))]);
+        return Ok(vec![Check::report(
+            3,
+            "continuous adjoint",
+            0.0,
+            format!("left out: {reason}"),
+        )]);
     }
     let adjoint = adjoint_mode(problem, point.expansion.k, point.c0)?;
     let mut checks = Vec::new();
@@ -75,13 +100,30 @@ fn routes(point: &LandauPoint) -> Result<Vec<Check>> {
     match second_landau(point, &adjoint)? {
         Some(c2) => {
             let difference = (c2 - point.c2).norm() / point.c2.norm().max(1e-300);
-            checks.push(Check::below(3, "c2 by two routes, relative", difference, tolerance, "discrete left vector against quadrature with the continuous adjoint"));
+            checks.push(Check::below(
+                3,
+                "c2 by two routes, relative",
+                difference,
+                tolerance,
+                "discrete left vector against quadrature with the continuous adjoint",
+            ));
         }
-        None => checks.push(Check::report(3, "c2 by two routes", 0.0, "left out: nonlinear boundary conditions")),
+        None => checks.push(Check::report(
+            3,
+            "c2 by two routes",
+            0.0,
+            "left out: nonlinear boundary conditions",
+        )),
     }
     let expansion = point.third_order()?;
     let bordered = (expansion.landau[1] - point.c2).norm() / point.c2.norm().max(1e-300);
-    checks.push(Check::below(3, "c2 of the bordered problem, relative", bordered, 1e-6, "multiplier against projection"));
+    checks.push(Check::below(
+        3,
+        "c2 of the bordered problem, relative",
+        bordered,
+        1e-6,
+        "multiplier against projection",
+    ));
     Ok(checks)
 }
 
@@ -90,11 +132,32 @@ fn convergence(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<V
     let mut checks = Vec::new();
     let error = accuracy(setup, base, point)?;
     let m = setup.effective_resolution();
-    let detail = format!("M = {m} against {}, and one route against the other", m + m.div_ceil(2));
+    let detail = format!(
+        "M = {m} against {}, and one route against the other",
+        m + m.div_ceil(2)
+    );
     let growth = point.c0.norm().max(1e-6);
-    checks.push(Check::below(5, "error of c0, relative", error.c0 / growth, 1e-3, detail.clone()));
-    checks.push(Check::below(5, "error of c2, relative", error.c2 / point.c2.norm(), 1e-3, detail));
-    checks.push(Check::below(5, "tail of the base state", base.tail(), 1e-9, format!("degree {}", base.degree)));
+    checks.push(Check::below(
+        5,
+        "error of c0, relative",
+        error.c0 / growth,
+        1e-3,
+        detail.clone(),
+    ));
+    checks.push(Check::below(
+        5,
+        "error of c2, relative",
+        error.c2 / point.c2.norm(),
+        1e-3,
+        detail,
+    ));
+    checks.push(Check::below(
+        5,
+        "tail of the base state",
+        base.tail(),
+        1e-9,
+        format!("degree {}", base.degree),
+    ));
     for (key, mode) in &point.expansion.modes {
         checks.push(Check::below(
             5,
@@ -107,9 +170,19 @@ fn convergence(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<V
     let resonance = resonance(point)?;
     let far = "distance of the k = 0 problem from singularity";
     if resonance.mean_flow.is_finite() {
-        checks.push(Check::report(5, "distance to mean-flow resonance", resonance.mean_flow, far));
+        checks.push(Check::report(
+            5,
+            "distance to mean-flow resonance",
+            resonance.mean_flow,
+            far,
+        ));
     }
-    checks.push(Check::report(5, "distance to 2:1 resonance", resonance.second_harmonic, "distance of the 2k problem from singularity"));
+    checks.push(Check::report(
+        5,
+        "distance to 2:1 resonance",
+        resonance.second_harmonic,
+        "distance of the 2k problem from singularity",
+    ));
     for (kind, order, value) in &point.expansion.multipliers {
         checks.push(Check::below(
             5,
@@ -136,7 +209,12 @@ fn tail(point: &LandauPoint, values: &[C64]) -> f64 {
         let on_extrema = super::quadrature::on_grid(problem, block.grid, fine, own);
         for part in [|v: &C64| v.re, |v: &C64| v.im] {
             let series = coefficients(&on_extrema.iter().map(part).collect::<Vec<f64>>());
-            let last = series.iter().rev().take(3).map(|c| c.abs()).fold(0.0, f64::max);
+            let last = series
+                .iter()
+                .rev()
+                .take(3)
+                .map(|c| c.abs())
+                .fold(0.0, f64::max);
             worst = worst.max(last / largest);
         }
     }
@@ -148,10 +226,16 @@ fn tail(point: &LandauPoint, values: &[C64]) -> f64 {
 /// # Errors
 /// Names the checks that failed.
 pub fn judge(checks: &[Check]) -> Result<()> {
-    let failed: Vec<&str> =
-        checks.iter().filter(|c| !c.passed).map(|c| c.name.as_str()).collect();
+    let failed: Vec<&str> = checks
+        .iter()
+        .filter(|c| !c.passed)
+        .map(|c| c.name.as_str())
+        .collect();
     if failed.is_empty() {
         return Ok(());
     }
-    Err(Error::computation(format!("the certificate does not hold: {}", failed.join("; "))))
+    Err(Error::computation(format!(
+        "the certificate does not hold: {}",
+        failed.join("; ")
+    )))
 }

@@ -5,11 +5,11 @@
 //! [(m a0 + i k b0) M0 − L_k] X[k;m] = G[k;m] − c_{m−1} δ_{k1} M0 X[1;1], P (3.18).
 
 use super::mode::Mode;
+use crate::collocation::GridKind;
 use crate::dense::{Factorised, Scalar};
 use crate::error::{Error, Result};
 use crate::model::{C64, ClosureKind, End, Jet};
 use crate::problem::Problem;
-use crate::collocation::GridKind;
 use crate::spectrum::EigenPair;
 use std::collections::BTreeMap;
 
@@ -41,9 +41,25 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let values: Vec<C64> = values.into_iter().map(|v| v * factor).collect();
         let rate = values.iter().map(|v| v * pair.c).collect();
         let mut modes = BTreeMap::new();
-        modes.insert((1, 1), Mode { harmonic: 1, values, rate, uniform: Vec::new() });
+        modes.insert(
+            (1, 1),
+            Mode {
+                harmonic: 1,
+                values,
+                rate,
+                uniform: Vec::new(),
+            },
+        );
         let (k, landau) = (pair.k, vec![pair.c]);
-        Ok(Expansion { problem, k, pair, modes, landau, multipliers: Vec::new(), jets: BTreeMap::new() })
+        Ok(Expansion {
+            problem,
+            k,
+            pair,
+            modes,
+            landau,
+            multipliers: Vec::new(),
+            jets: BTreeMap::new(),
+        })
     }
 
     /// m a0 + i k b0
@@ -58,7 +74,11 @@ impl<'p, 'm> Expansion<'p, 'm> {
     pub fn solve(&mut self, key: Key) -> Result<()> {
         let real = self.problem.is_real() && self.landau.iter().all(|c| c.im == 0.0);
         let mean_real = key.0 == 0 && (self.problem.structure().parity.is_none() || real);
-        let mode = if real || mean_real { self.solve_as::<f64>(key)? } else { self.solve_as::<C64>(key)? };
+        let mode = if real || mean_real {
+            self.solve_as::<f64>(key)?
+        } else {
+            self.solve_as::<C64>(key)?
+        };
         self.modes.insert(key, mode);
         Ok(())
     }
@@ -69,7 +89,11 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let k = harmonic as f64 * self.k;
         let shift = self.shift(key);
         let mut system: Vec<T> = right.iter().map(|&v| T::from_complex(v)).collect();
-        let borders = if harmonic == 0 { self.problem.borders.len() } else { 0 };
+        let borders = if harmonic == 0 {
+            self.problem.borders.len()
+        } else {
+            0
+        };
         system.extend((0..borders).map(|_| T::from_complex(C64::new(0.0, 0.0))));
         let solution = Factorised::new(self.problem.shifted::<T>(k, shift)).solve(&system);
         if solution.iter().any(|v| !v.complex().norm().is_finite()) {
@@ -88,8 +112,11 @@ impl<'p, 'm> Expansion<'p, 'm> {
     pub fn solve_fundamental(&mut self, order: usize) -> Result<()> {
         let key = (1, order);
         let real = self.problem.is_real() && self.landau.iter().all(|c| c.im == 0.0);
-        let (mode, coefficient) =
-            if real { self.bordered::<f64>(key)? } else { self.bordered::<C64>(key)? };
+        let (mode, coefficient) = if real {
+            self.bordered::<f64>(key)?
+        } else {
+            self.bordered::<C64>(key)?
+        };
         self.landau.push(coefficient);
         self.modes.insert(key, mode);
         // The rate of X[1;m] gains the new coefficient times the fundamental.
@@ -122,7 +149,9 @@ impl<'p, 'm> Expansion<'p, 'm> {
         system.push(T::from_complex(C64::new(0.0, 0.0)));
         let solution = Factorised::new(bordered).solve(&system);
         if solution.iter().any(|v| !v.complex().norm().is_finite()) {
-            return Err(Error::computation("the bordered problem for c2 is singular"));
+            return Err(Error::computation(
+                "the bordered problem for c2 is singular",
+            ));
         }
         Ok((self.mode(key, &solution[..n]), solution[n].complex()))
     }
@@ -134,9 +163,15 @@ impl<'p, 'm> Expansion<'p, 'm> {
         // ∂t (A^q e^{ikθ}) reaches order m through a_{m−q}, b_{m−q}.
         for (&(k, q), lower) in &self.modes {
             let step = order.saturating_sub(q);
-            if k == harmonic && step > 0 && step % 2 == 0 && let Some(c) = self.landau.get(step / 2) {
+            if k == harmonic
+                && step > 0
+                && step % 2 == 0
+                && let Some(c) = self.landau.get(step / 2)
+            {
                 let factor = C64::new(q as f64 * c.re, k as f64 * c.im);
-                rate.iter_mut().zip(&lower.values).for_each(|(r, v)| *r += factor * v);
+                rate.iter_mut()
+                    .zip(&lower.values)
+                    .for_each(|(r, v)| *r += factor * v);
             }
         }
         let n = self.problem.direct.layout.size;
@@ -145,15 +180,29 @@ impl<'p, 'm> Expansion<'p, 'm> {
             vec![C64::new(0.0, 0.0); self.problem.structure().fields.len() - profiles];
         if harmonic == 0 {
             let size = self.problem.direct.layout.size;
-            let largest = solution[..size].iter().map(|v| v.complex().norm()).fold(1e-300, f64::max);
+            let largest = solution[..size]
+                .iter()
+                .map(|v| v.complex().norm())
+                .fold(1e-300, f64::max);
             for (border, value) in self.problem.borders.iter().zip(&solution[n..]) {
                 match (border.kind, border.field) {
-                    (ClosureKind::Unknown, Some(field)) => uniform[field - profiles] = value.complex(),
-                    _ => self.multipliers.push((border.kind, order, value.complex().norm() / largest)),
+                    (ClosureKind::Unknown, Some(field)) => {
+                        uniform[field - profiles] = value.complex()
+                    }
+                    _ => self.multipliers.push((
+                        border.kind,
+                        order,
+                        value.complex().norm() / largest,
+                    )),
                 }
             }
         }
-        Mode { harmonic: harmonic as i32, values, rate, uniform }
+        Mode {
+            harmonic: harmonic as i32,
+            values,
+            rate,
+            uniform,
+        }
     }
 
     /// Physical values in the solver's basis.
@@ -185,16 +234,27 @@ impl<'p, 'm> Expansion<'p, 'm> {
             if harmonic != k || q >= m || (m - q) % 2 == 1 || (k, q) == (1, 1) {
                 continue;
             }
-            let Some(c) = self.landau.get((m - q) / 2) else { continue };
+            let Some(c) = self.landau.get((m - q) / 2) else {
+                continue;
+            };
             let factor = C64::new(q as f64 * c.re, k as f64 * c.im);
             let mass = self.problem.mass::<C64>(k as f64 * self.k);
             let values = self.solver_basis(&mode.values);
             let product = crate::dense::apply(mass.as_ref(), &values);
-            right.iter_mut().zip(product).for_each(|(r, p)| *r -= factor * p);
+            right
+                .iter_mut()
+                .zip(product)
+                .for_each(|(r, p)| *r -= factor * p);
         }
     }
 
-    fn add_product(&mut self, degree: usize, factors: &[(Key, bool)], multiplicity: f64, right: &mut [C64]) {
+    fn add_product(
+        &mut self,
+        degree: usize,
+        factors: &[(Key, bool)],
+        multiplicity: f64,
+        right: &mut [C64],
+    ) {
         let problem = self.problem;
         let structure = problem.structure();
         for row in 0..structure.balances.len() {
@@ -218,11 +278,19 @@ impl<'p, 'm> Expansion<'p, 'm> {
             }
         }
         for (index, wall) in problem.direct.walls.iter().enumerate() {
-            let terms: Vec<_> = wall.nonlinear.iter().filter(|(m, _)| m.len() == degree).collect();
+            let terms: Vec<_> = wall
+                .nonlinear
+                .iter()
+                .filter(|(m, _)| m.len() == degree)
+                .collect();
             if terms.is_empty() {
                 continue;
             }
-            let end = if wall.end == End::Lower { GridKind::Lower } else { GridKind::Upper };
+            let end = if wall.end == End::Lower {
+                GridKind::Lower
+            } else {
+                GridKind::Upper
+            };
             let modes: Vec<Mode> = factors.iter().map(|f| self.factor(*f)).collect();
             let mut total = C64::new(0.0, 0.0);
             for (monomial, coefficient) in terms {
@@ -236,7 +304,11 @@ impl<'p, 'm> Expansion<'p, 'm> {
 
     fn factor(&self, ((k, m), conjugate): (Key, bool)) -> Mode {
         let mode = &self.modes[&(k, m)];
-        if conjugate { mode.conjugate() } else { mode.clone() }
+        if conjugate {
+            mode.conjugate()
+        } else {
+            mode.clone()
+        }
     }
 
     /// Jets of one factor on one row's grid; rows on one grid share them.
@@ -259,17 +331,29 @@ impl<'p, 'm> Expansion<'p, 'm> {
 }
 
 /// 1/d! Σ over permutations of Π jets at one end.
-fn symmetric_product(problem: &Problem, k: f64, modes: &[Mode], monomial: &[Jet], end: GridKind) -> C64 {
+fn symmetric_product(
+    problem: &Problem,
+    k: f64,
+    modes: &[Mode],
+    monomial: &[Jet],
+    end: GridKind,
+) -> C64 {
     fn sum(values: &[Vec<C64>], position: usize, used: u32) -> C64 {
         if position == values.len() {
             return C64::new(1.0, 0.0);
         }
         let open = (0..values.len()).filter(|i| used >> i & 1 == 0);
-        open.map(|i| values[position][i] * sum(values, position + 1, used | 1 << i)).sum()
+        open.map(|i| values[position][i] * sum(values, position + 1, used | 1 << i))
+            .sum()
     }
     let values: Vec<Vec<C64>> = monomial
         .iter()
-        .map(|&jet| modes.iter().map(|mode| mode.jet(problem, k, jet, end)[0]).collect())
+        .map(|&jet| {
+            modes
+                .iter()
+                .map(|mode| mode.jet(problem, k, jet, end)[0])
+                .collect()
+        })
         .collect();
     let factorial: f64 = (1..=modes.len()).map(|i| i as f64).product();
     sum(&values, 0, 0) / factorial
@@ -277,7 +361,11 @@ fn symmetric_product(problem: &Problem, k: f64, modes: &[Mode], monomial: &[Jet]
 
 /// All products of `degree` modes that force (k, m): each multiset once, with the number of its
 /// orderings.
-fn products(modes: &BTreeMap<Key, Mode>, (k, m): Key, degree: usize) -> Vec<(Vec<(Key, bool)>, f64)> {
+fn products(
+    modes: &BTreeMap<Key, Mode>,
+    (k, m): Key,
+    degree: usize,
+) -> Vec<(Vec<(Key, bool)>, f64)> {
     let mut candidates: Vec<(Key, bool)> = Vec::new();
     for &key in modes.keys() {
         candidates.push((key, false));
@@ -300,14 +388,20 @@ fn products(modes: &BTreeMap<Key, Mode>, (k, m): Key, degree: usize) -> Vec<(Vec
             continue;
         }
         let first = chosen.last().copied().unwrap_or(0);
-        for (index, ((harmonic_of, order_of), conjugate)) in candidates.iter().enumerate().skip(first) {
+        for (index, ((harmonic_of, order_of), conjugate)) in
+            candidates.iter().enumerate().skip(first)
+        {
             if order + order_of > m {
                 continue;
             }
             let sign = if *conjugate { -1 } else { 1 };
             let mut longer = chosen.clone();
             longer.push(index);
-            open.push((longer, harmonic + sign * *harmonic_of as i64, order + order_of));
+            open.push((
+                longer,
+                harmonic + sign * *harmonic_of as i64,
+                order + order_of,
+            ));
         }
     }
     found

@@ -100,8 +100,16 @@ impl<'p, 'm> LandauPoint<'p, 'm> {
 
     /// `supercritical pitchfork` and the like.
     pub fn bifurcation(&self) -> String {
-        let side = if self.c2.re < 0.0 { "supercritical" } else { "subcritical" };
-        let kind = if self.c0.im == 0.0 { "pitchfork" } else { "Hopf" };
+        let side = if self.c2.re < 0.0 {
+            "supercritical"
+        } else {
+            "subcritical"
+        };
+        let kind = if self.c0.im == 0.0 {
+            "pitchfork"
+        } else {
+            "Hopf"
+        };
         format!("{side} {kind}")
     }
 }
@@ -110,9 +118,15 @@ impl Expansion<'_, '_> {
     /// ⟨left vector, forcing⟩ / ⟨left vector, M0 X[1;1]⟩ with the discrete left vector.
     pub fn project(&self, forcing: &[C64]) -> C64 {
         let mass = self.problem.mass::<C64>(self.k);
-        let turns = self.problem.physical(&vec![C64::new(1.0, 0.0); forcing.len()]);
-        let fundamental: Vec<C64> =
-            self.modes[&(1, 1)].values.iter().zip(turns).map(|(v, t)| v / t).collect();
+        let turns = self
+            .problem
+            .physical(&vec![C64::new(1.0, 0.0); forcing.len()]);
+        let fundamental: Vec<C64> = self.modes[&(1, 1)]
+            .values
+            .iter()
+            .zip(turns)
+            .map(|(v, t)| v / t)
+            .collect();
         let mass_x = apply(mass.as_ref(), &fundamental);
         dot(&self.pair.left, forcing) / dot(&self.pair.left, &mass_x)
     }
@@ -130,15 +144,26 @@ pub fn outputs(point: &LandauPoint) -> Vec<[f64; 2]> {
     let mut values = Vec::new();
     for output in &structure.outputs {
         // Nodes with weights: one place, or a quadrature.
-        let first = evaluate(problem.model, KernelId::Outputs, &problem.base.point(problem.model, -1.0, k));
+        let first = evaluate(
+            problem.model,
+            KernelId::Outputs,
+            &problem.base.point(problem.model, -1.0, k),
+        );
         let (nodes, weights) = if output.at_point && problem.resolution > 0 {
-            (vec![-1.0 + (first[position] - problem.base.lower) * problem.base.scale()], vec![1.0])
+            (
+                vec![-1.0 + (first[position] - problem.base.lower) * problem.base.scale()],
+                vec![1.0],
+            )
         } else {
             (Grid::new(grid).nodes, quadrature_weights(problem, grid))
         };
         let mut total = [0.0; 2];
         for (xi, weight) in nodes.iter().zip(&weights) {
-            let out = evaluate(problem.model, KernelId::Outputs, &problem.base.point(problem.model, *xi, k));
+            let out = evaluate(
+                problem.model,
+                KernelId::Outputs,
+                &problem.base.point(problem.model, *xi, k),
+            );
             for (offset, monomial) in output.monomials.iter().enumerate() {
                 let coefficient = weight * out[position + 1 + offset];
                 match monomial.as_slice() {
@@ -160,7 +185,13 @@ pub fn outputs(point: &LandauPoint) -> Vec<[f64; 2]> {
 }
 
 /// A jet of a mode at one point of [−1, 1].
-pub fn value_at(mode: &super::Mode, problem: &Problem, k: f64, jet: crate::model::Jet, xi: f64) -> C64 {
+pub fn value_at(
+    mode: &super::Mode,
+    problem: &Problem,
+    k: f64,
+    jet: crate::model::Jet,
+    xi: f64,
+) -> C64 {
     let field = usize::from(jet.field);
     let Some(block) = problem.direct.layout.columns.get(field) else {
         return mode.jet(problem, k, jet, crate::collocation::GridKind::Point)[0];

@@ -30,10 +30,14 @@ impl Mode {
 
     /// Jets at the points of one grid: `[point][jet]`.
     pub fn jets(&self, problem: &Problem, k: f64, jets: &[Jet], grid: GridKind) -> Vec<Vec<C64>> {
-        let columns: Vec<Vec<C64>> =
-            jets.iter().map(|&jet| self.jet(problem, k, jet, grid)).collect();
+        let columns: Vec<Vec<C64>> = jets
+            .iter()
+            .map(|&jet| self.jet(problem, k, jet, grid))
+            .collect();
         let points = columns.first().map_or(0, Vec::len);
-        (0..points).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
+        (0..points)
+            .map(|i| columns.iter().map(|column| column[i]).collect())
+            .collect()
     }
 
     /// One jet at the points of a grid.
@@ -44,14 +48,20 @@ impl Mode {
         factor *= kx.abs().powi(i32::from(jet.absx));
         let Some(block) = problem.direct.layout.columns.get(field) else {
             let profiles = problem.direct.layout.columns.len();
-            let value = self.uniform.get(field - profiles).copied().unwrap_or_default();
+            let value = self
+                .uniform
+                .get(field - profiles)
+                .copied()
+                .unwrap_or_default();
             let points = crate::collocation::Grid::new(grid).len();
             return vec![value * factor; points];
         };
         factor *= problem.scale().powi(i32::from(jet.y));
         let source = if jet.t == 0 { &self.values } else { &self.rate };
         let source = &source[block.offset..block.offset + block.len];
-        let matrix = problem.discretisation.matrix(block.grid, grid, usize::from(jet.y));
+        let matrix = problem
+            .discretisation
+            .matrix(block.grid, grid, usize::from(jet.y));
         let mut result = vec![C64::new(0.0, 0.0); matrix.nrows()];
         for (j, value) in source.iter().enumerate() {
             let value = value * factor;

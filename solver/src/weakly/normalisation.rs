@@ -17,7 +17,11 @@ pub fn normalise(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
     let structure = problem.structure();
     let amplitude = &structure.amplitude;
     if let Some(field) = amplitude.field {
-        let out = evaluate(problem.model, KernelId::Amplitude, &problem.base.point(problem.model, 0.0, k));
+        let out = evaluate(
+            problem.model,
+            KernelId::Amplitude,
+            &problem.base.point(problem.model, 0.0, k),
+        );
         let (wanted, place) = (out[0].abs(), out[1]);
         let value = point_value(problem, values, field, place);
         if value.norm() < 1e-12 * values.iter().map(|v| v.norm()).fold(0.0, f64::max) {
@@ -47,7 +51,11 @@ fn point_value(problem: &Problem, values: &[C64], field: usize, place: f64) -> C
     }
     let xi = -1.0 + (place - problem.base.lower) * problem.base.scale();
     let row = Grid::new(block.grid).interpolate_to(&[xi]);
-    values.iter().enumerate().map(|(j, v)| v * row[(0, j)]).sum()
+    values
+        .iter()
+        .enumerate()
+        .map(|(j, v)| v * row[(0, j)])
+        .sum()
 }
 
 /// ∫ Σ w|q|² dy and the value it should have.
@@ -59,12 +67,19 @@ fn weighted_square(problem: &Problem, k: f64, values: &[C64]) -> (f64, f64) {
         let own = &values[block.offset..block.offset + block.len];
         for (j, y) in own.iter().enumerate() {
             let column = gram.col(j);
-            let product: C64 = own.iter().zip(column.iter()).map(|(x, g)| x.conj() * *g).sum();
+            let product: C64 = own
+                .iter()
+                .zip(column.iter())
+                .map(|(x, g)| x.conj() * *g)
+                .sum();
             square += (product * y).re;
         }
     }
     let point = problem.base.point(problem.model, 0.0, k);
-    (square, evaluate(problem.model, KernelId::Amplitude, &point)[fields.len()])
+    (
+        square,
+        evaluate(problem.model, KernelId::Amplitude, &point)[fields.len()],
+    )
 }
 
 /// A grid on which products of two profiles integrate exactly.
@@ -90,7 +105,9 @@ fn phase(problem: &Problem, values: &[C64]) -> C64 {
     let parity = problem.structure().parity.as_ref();
     for (field, block) in problem.direct.layout.columns.iter().enumerate() {
         let own = &values[block.offset..block.offset + block.len];
-        let Some(largest) = own.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())) else { continue };
+        let Some(largest) = own.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())) else {
+            continue;
+        };
         if largest.norm() > 1e-9 * values.iter().map(|v| v.norm()).fold(0.0, f64::max) {
             let odd = parity.is_some_and(|p| p.fields[field]);
             let turn = quarter(odd);

@@ -17,13 +17,26 @@ const DEGREE: usize = 11;
 pub(super) fn check(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Vec<Check>> {
     let problem = point.expansion.problem;
     if let Err(reason) = problem.adjoint() {
-        return Ok(vec![Check::report(2, "duality", 0.0, format!("left out: {reason}"))]);
+        return Ok(vec![Check::report(
+            2,
+            "duality",
+            0.0,
+            format!("left out: {reason}"),
+        )]);
     }
     let k = point.expansion.k;
     let mut checks = Vec::new();
-    let worst = (0..4).map(|seed| duality(problem, k, seed)).fold(0.0, f64::max);
+    let worst = (0..4)
+        .map(|seed| duality(problem, k, seed))
+        .fold(0.0, f64::max);
     let points = 4 * problem.resolution + 1;
-    checks.push(Check::below(2, "duality, relative", worst, 1e-10, format!("random smooth fields, {points} points")));
+    checks.push(Check::below(
+        2,
+        "duality, relative",
+        worst,
+        1e-10,
+        format!("random smooth fields, {points} points"),
+    ));
     let mut resolution = setup.effective_resolution();
     for _ in 0..2 {
         let mut finer = setup.clone();
@@ -33,7 +46,12 @@ pub(super) fn check(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Res
             let adjoint = adjoint_mode(problem, k, pair.c)?;
             Ok((adjoint.c.conj() - pair.c).norm())
         })?;
-        checks.push(Check::report(2, format!("|c0(L) − conj c0(L†)| at M = {resolution}"), difference, "two discretisations"));
+        checks.push(Check::report(
+            2,
+            format!("|c0(L) − conj c0(L†)| at M = {resolution}"),
+            difference,
+            "two discretisations",
+        ));
         if resolution == 0 {
             break;
         }
@@ -41,14 +59,24 @@ pub(super) fn check(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Res
     }
     let direct = spectrum::eigenvalues(problem, k)?;
     let adjoint = spectrum::adjoint_eigenvalues(problem, k)?;
-    let leading = direct.first().zip(adjoint.first()).map_or(f64::NAN, |(a, b)| (a - b.conj()).norm().min((a - b).norm()));
-    checks.push(Check::report(2, "leading eigenvalues of L and L†, difference", leading, format!("M = {}", problem.resolution)));
+    let leading = direct
+        .first()
+        .zip(adjoint.first())
+        .map_or(f64::NAN, |(a, b)| (a - b.conj()).norm().min((a - b).norm()));
+    checks.push(Check::report(
+        2,
+        "leading eigenvalues of L and L†, difference",
+        leading,
+        format!("M = {}", problem.resolution),
+    ));
     Ok(checks)
 }
 
 /// |⟨Y, L X⟩ − ⟨L†Y, X⟩| over the sum of the moduli.
 pub fn duality(problem: &Problem, k: f64, seed: u64) -> f64 {
-    let Ok(adjoint) = problem.adjoint() else { return f64::NAN };
+    let Ok(adjoint) = problem.adjoint() else {
+        return f64::NAN;
+    };
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9).wrapping_add(12345));
     let structure = problem.structure();
     let x = admissible(&problem.direct, problem, k, &mut random);
@@ -80,11 +108,20 @@ pub fn duality(problem: &Problem, k: f64, seed: u64) -> f64 {
 }
 
 /// Chebyshev coefficients of random smooth fields that obey the conditions of a problem.
-fn admissible(linear: &LinearProblem, problem: &Problem, k: f64, random: &mut Random) -> Vec<Vec<C64>> {
+fn admissible(
+    linear: &LinearProblem,
+    problem: &Problem,
+    k: f64,
+    random: &mut Random,
+) -> Vec<Vec<C64>> {
     let columns = linear.layout.columns.len();
     let degree = if problem.resolution == 0 { 0 } else { DEGREE };
     let mut series: Vec<Vec<C64>> = (0..columns)
-        .map(|_| (0..=degree).map(|n| random.complex() / (1.0 + (n * n) as f64)).collect())
+        .map(|_| {
+            (0..=degree)
+                .map(|n| random.complex() / (1.0 + (n * n) as f64))
+                .collect()
+        })
         .collect();
     let size = columns * (degree + 1);
     let q = linear.walls.len();
@@ -98,8 +135,17 @@ fn admissible(linear: &LinearProblem, problem: &Problem, k: f64, random: &mut Ra
         let (field, n) = (column / (degree + 1), column % (degree + 1));
         let mut unit = vec![0.0; degree + 1];
         unit[n] = 1.0;
-        let terms = wall.linear.iter().filter(|(jet, _)| usize::from(jet.field) == field);
-        terms.map(|(jet, c)| symbol(problem, *jet, k) * *c * derivative_values(&unit, xi, jet.y.into())[usize::from(jet.y)]).sum::<C64>()
+        let terms = wall
+            .linear
+            .iter()
+            .filter(|(jet, _)| usize::from(jet.field) == field);
+        terms
+            .map(|(jet, c)| {
+                symbol(problem, *jet, k)
+                    * *c
+                    * derivative_values(&unit, xi, jet.y.into())[usize::from(jet.y)]
+            })
+            .sum::<C64>()
     });
     let x = nalgebra::DVector::from_fn(size, |i, _| series[i / (degree + 1)][i % (degree + 1)]);
     let gram = &w * w.adjoint();
@@ -120,7 +166,9 @@ fn symbol(problem: &Problem, jet: Jet, k: f64) -> C64 {
 }
 
 fn jet_value(problem: &Problem, series: &[Vec<C64>], k: f64, jet: Jet, xi: f64) -> C64 {
-    let Some(own) = series.get(usize::from(jet.field)) else { return C64::new(0.0, 0.0) };
+    let Some(own) = series.get(usize::from(jet.field)) else {
+        return C64::new(0.0, 0.0);
+    };
     let order = usize::from(jet.y);
     let part = |of: fn(&C64) -> f64| {
         derivative_values(&own.iter().map(of).collect::<Vec<f64>>(), xi, order)[order]
@@ -135,7 +183,10 @@ impl Random {
     /// Uniform in (−1, 1).
     pub fn number(&mut self) -> f64 {
         // Knuth's MMIX constants
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 

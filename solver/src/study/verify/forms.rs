@@ -15,8 +15,20 @@ pub(super) fn check(problem: &Problem) -> Result<Vec<Check>> {
     let mut checks = Vec::new();
     for degree in 2..=problem.structure().order.min(SERIES_LENGTH - 1) {
         let (difference, asymmetry) = second_route(problem, degree);
-        checks.push(Check::below(4, format!("N{degree} against the series route, relative"), difference, 1e-10, format!("{STATES} random states")));
-        checks.push(Check::below(4, format!("N{degree} symmetric, relative"), asymmetry, 1e-12, "arguments exchanged"));
+        checks.push(Check::below(
+            4,
+            format!("N{degree} against the series route, relative"),
+            difference,
+            1e-10,
+            format!("{STATES} random states"),
+        ));
+        checks.push(Check::below(
+            4,
+            format!("N{degree} symmetric, relative"),
+            asymmetry,
+            1e-12,
+            "arguments exchanged",
+        ));
     }
     Ok(checks)
 }
@@ -41,7 +53,11 @@ pub fn second_route(problem: &Problem, degree: usize) -> (f64, f64) {
         let z = state(&mut random, jets);
         let in_forms = |x: &[C64]| -> Vec<C64> {
             let find = |jet: &Jet| jets.iter().position(|j| j == jet);
-            structure.form_jets.iter().map(|jet| find(jet).map_or(C64::new(0.0, 0.0), |i| x[i])).collect()
+            structure
+                .form_jets
+                .iter()
+                .map(|jet| find(jet).map_or(C64::new(0.0, 0.0), |i| x[i]))
+                .collect()
         };
         let base = base_jets(problem, &point, jets);
         let series: Vec<Series> = base
@@ -50,7 +66,11 @@ pub fn second_route(problem: &Problem, degree: usize) -> (f64, f64) {
             .map(|(&b, &slope)| Series::line(C64::from(b), slope))
             .collect();
         let mut out = vec![Series::from(0.0); structure.balances.len()];
-        problem.model.residual(ResidualId::Balances, &point, ResidualCall::Series(&series, &mut out));
+        problem.model.residual(
+            ResidualId::Balances,
+            &point,
+            ResidualCall::Series(&series, &mut out),
+        );
         let diagonal = in_forms(&x);
         let others = [in_forms(&x), in_forms(&y), in_forms(&z)];
         for row in 0..structure.balances.len() {
@@ -64,7 +84,10 @@ pub fn second_route(problem: &Problem, degree: usize) -> (f64, f64) {
             let arguments: Vec<&[C64]> = (0..degree).map(|_| diagonal.as_slice()).collect();
             let form = problem.model.form(degree, row, &c, &arguments);
             let expected = -out[row].0[degree] / divisors[row];
-            let size = form.norm().max(expected.norm()).max(1e-12 * out[row].0[1].norm() / divisors[row].abs());
+            let size = form
+                .norm()
+                .max(expected.norm())
+                .max(1e-12 * out[row].0[1].norm() / divisors[row].abs());
             difference = difference.max((form - expected).norm() / size.max(1e-300));
             let forward: Vec<&[C64]> = (0..degree).map(|i| others[i].as_slice()).collect();
             let backward: Vec<&[C64]> = (0..degree).rev().map(|i| others[i].as_slice()).collect();

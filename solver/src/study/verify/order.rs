@@ -27,7 +27,14 @@ pub(super) fn check(point: &LandauPoint) -> Result<Vec<Check>> {
     let detail = format!("log2 of the ratio of defects at A = {amplitude:.2e} and its half");
     let passed = slope.is_finite() && slope >= SLOPE * 0.98;
     let name = "order of the residual in A".to_owned();
-    Ok(vec![Check { part: 1, name, value: slope, bound: SLOPE * 0.98, passed, detail }])
+    Ok(vec![Check {
+        part: 1,
+        name,
+        value: slope,
+        bound: SLOPE * 0.98,
+        passed,
+        detail,
+    }])
 }
 
 /// Amplitudes and defects, each amplitude half the one before.
@@ -41,7 +48,11 @@ pub fn defects(expansion: &Expansion) -> Vec<(f64, f64)> {
 
 /// An amplitude at which the series still makes sense.
 fn start(expansion: &Expansion) -> f64 {
-    let largest = expansion.modes[&(1, 1)].values.iter().map(|v| v.norm()).fold(1e-300, f64::max);
+    let largest = expansion.modes[&(1, 1)]
+        .values
+        .iter()
+        .map(|v| v.norm())
+        .fold(1e-300, f64::max);
     let second = [(0, 2), (2, 2)]
         .iter()
         .filter_map(|key| expansion.modes.get(key))
@@ -57,14 +68,18 @@ fn start(expansion: &Expansion) -> f64 {
 pub fn floor(expansion: &Expansion) -> (f64, f64) {
     let rest = defect(expansion, 0.0);
     let tiny = start(expansion) * 1e-9;
-    (rest, (defect(expansion, tiny) - rest).max(0.0) / tiny)
+    // What does not stand out of the rest is the rest.
+    let slope = (defect(expansion, tiny) - 2.0 * rest).max(0.0) / tiny;
+    (rest, slope)
 }
 
 /// The slope between the two smallest amplitudes whose defects stand clear of the floor.
 pub fn slope(defects: &[(f64, f64)], floor: &(f64, f64)) -> (f64, f64) {
     let clear = |&(a, d): &(f64, f64)| d > ABOVE_FLOOR * (floor.0 + floor.1 * a) && d > 0.0;
     let pairs = defects.windows(2).filter(|w| clear(&w[1]));
-    pairs.last().map_or((f64::NAN, f64::NAN), |w| ((w[0].1 / w[1].1).log2(), w[0].0))
+    pairs
+        .last()
+        .map_or((f64::NAN, f64::NAN), |w| ((w[0].1 / w[1].1).log2(), w[0].0))
 }
 
 /// Largest residual over all balances (at their own points) and boundary conditions.
@@ -73,13 +88,23 @@ fn defect(expansion: &Expansion, amplitude: f64) -> f64 {
     let structure = problem.structure();
     let mut worst = 0.0_f64;
     for (row, block) in problem.direct.layout.rows.iter().enumerate() {
-        let values = residuals(expansion, amplitude, block.grid, ResidualId::Balances, structure.balances.len());
+        let values = residuals(
+            expansion,
+            amplitude,
+            block.grid,
+            ResidualId::Balances,
+            structure.balances.len(),
+        );
         for value in values {
             worst = worst.max(value[row].abs());
         }
     }
     for (index, wall) in problem.direct.walls.iter().enumerate() {
-        let kind = if wall.end == End::Lower { GridKind::Lower } else { GridKind::Upper };
+        let kind = if wall.end == End::Lower {
+            GridKind::Lower
+        } else {
+            GridKind::Upper
+        };
         let id = ResidualId::Conditions(problem.base.case);
         // The perturbation obeys B(X⁰ + X') − B(X⁰) = 0.
         let with = residuals(expansion, amplitude, kind, id, problem.direct.walls.len());
@@ -102,14 +127,23 @@ fn residuals(
     let problem = expansion.problem;
     let jets = &problem.structure().residual_jets;
     let points = Grid::new(grid).nodes;
-    let base: Vec<Vec<f64>> =
-        points.iter().map(|&xi| problem.base.point(problem.model, xi, expansion.k)).collect();
+    let base: Vec<Vec<f64>> = points
+        .iter()
+        .map(|&xi| problem.base.point(problem.model, xi, expansion.k))
+        .collect();
     // Each mode with the factor of its time derivative, A-dependence of the rates included.
     let mut tables = Vec::new();
     for (&(harmonic, order), mode) in &expansion.modes {
         let rate = instantaneous_rate(expansion, amplitude, harmonic, order);
-        let moving = Mode { rate: mode.values.iter().map(|v| v * rate).collect(), ..mode.clone() };
-        tables.push((harmonic, order, moving.jets(problem, expansion.k, jets, grid)));
+        let moving = Mode {
+            rate: mode.values.iter().map(|v| v * rate).collect(),
+            ..mode.clone()
+        };
+        tables.push((
+            harmonic,
+            order,
+            moving.jets(problem, expansion.k, jets, grid),
+        ));
     }
     let mut all = Vec::new();
     for phase in 0..PHASES {
@@ -126,7 +160,9 @@ fn residuals(
                 }
             }
             let mut out = vec![0.0; count];
-            problem.model.residual(id, point, ResidualCall::Real(&x, &mut out));
+            problem
+                .model
+                .residual(id, point, ResidualCall::Real(&x, &mut out));
             all.push(out);
         }
     }

@@ -1,0 +1,65 @@
+//! Ratios worth quoting: a warm Landau point, emitted against tape, the generator.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use landau_codegen::build::{generate_module, read_sources};
+use landau_solver::Model;
+use landau_solver::collocation::Discretisation;
+use landau_solver::model::TapeModel;
+use landau_solver::problem::Problem;
+use landau_solver::study::Setup;
+use landau_solver::weakly::{Selection, point, warm_point};
+use std::path::Path;
+
+fn warm(criterion: &mut Criterion, name: &str, model: &dyn Model) {
+    let setup = Setup::new(model, 50);
+    let base = setup.base(None).expect("a base state");
+    let discretisation = Discretisation::new();
+    let problem = Problem::new(model, &base, &discretisation, 50).expect("a problem");
+    let near = point(&problem, 0.16, Selection::Leading)
+        .expect("a point")
+        .expansion
+        .pair;
+    criterion.bench_function(name, |b| {
+        b.iter(|| warm_point(&problem, 0.161, &near).expect("a point").c2)
+    });
+}
+
+fn benches(criterion: &mut Criterion) {
+    faer::set_global_parallelism(faer::Par::Seq);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../spec/models");
+    let models = landau_spec::models();
+    let bed = models
+        .iter()
+        .find(|m| m.structure().name == "vibrated_bed")
+        .expect("the bed");
+    warm(
+        criterion,
+        "warm Landau point, M = 50, emitted",
+        bed.as_ref(),
+    );
+    let sources = read_sources(&folder.join("vibrated_bed.model")).expect("the spec");
+    let tape = TapeModel::new(&sources).expect("a well-formed spec");
+    warm(criterion, "warm Landau point, M = 50, tape", &tape);
+    criterion.bench_function("base state", |b| {
+        let setup = Setup::new(bed.as_ref(), 50);
+        b.iter(|| setup.base(None).expect("a base state").residual);
+    });
+    criterion.bench_function("generator, all specs", |b| {
+        b.iter(|| {
+            let paths = std::fs::read_dir(&folder)
+                .expect("models")
+                .filter_map(|e| e.ok());
+            paths
+                .map(|e| {
+                    generate_module(read_sources(&e.path()).expect("a spec"))
+                        .expect("well formed")
+                        .2
+                        .len()
+                })
+                .sum::<usize>()
+        });
+    });
+}
+
+criterion_group!(all, benches);
+criterion_main!(all);

@@ -1,0 +1,253 @@
+//! The contract of the command line: keys, exit codes, messages, files whole or not at all.
+
+use crate::support::{json, landau, number, root};
+
+#[test]
+fn point_has_its_keys() {
+    let found = json("point vibrated_bed --k 0.16");
+    for path in [
+        "/model",
+        "/parameters/F",
+        "/k",
+        "/M",
+        "/c0/1",
+        "/c2/1",
+        "/amplitude",
+        "/bifurcation",
+        "/normalization",
+        "/error/c0",
+        "/error/c2",
+        "/resonance/mean_flow",
+        "/resonance/second_harmonic",
+        "/outputs",
+        "/dc0/S/1",
+    ] {
+        assert!(
+            found.pointer(path).is_some(),
+            "{path} is missing in {found}"
+        );
+    }
+    assert_eq!(found["parameters"]["top"], "dirichlet");
+}
+
+#[test]
+fn spectra_are_sorted_and_conjugate() {
+    let found = json("spectrum plane_poiseuille --k 1 --set R=10000 -M 60");
+    let part = |name: &str, i: usize, p: usize| number(&found, &format!("/{name}/{i}/{p}"));
+    for i in 0..20 {
+        assert!(part("direct", i, 0) >= part("direct", i + 1, 0));
+        assert!(part("adjoint", i, 0) >= part("adjoint", i + 1, 0));
+    }
+    assert!((part("direct", 0, 0) - part("adjoint", 0, 0)).abs() < 1e-7);
+    assert!((part("direct", 0, 1) + part("adjoint", 0, 1)).abs() < 1e-7);
+    // P (6.4) has no adjoint conditions, and the command says so.
+    let open = json("spectrum vibrated_bed --k 0.1 --set top=decaying");
+    assert!(open["adjoint"].is_null());
+    assert!(
+        open["adjoint_missing"]
+            .as_str()
+            .is_some_and(|s| s.contains("no adjoint boundary conditions"))
+    );
+}
+
+#[test]
+fn bad_input_is_refused_in_a_sentence() {
+    for (line, status, words) in [
+        (
+            "point vibrated_bed --k 0.16 --set G=1",
+            2,
+            "no parameter `G`",
+        ),
+        (
+            "point vibrated_bed --k 0.16 --set e=2",
+            2,
+            "a number in 0..1",
+        ),
+        ("point vibrated_bed --k 0.16 --set e=nan", 2, "accepts"),
+        (
+            "point vibrated_bed --k 0.16 --set top=open",
+            2,
+            "dirichlet, flux_free, decaying, neumann",
+        ),
+        ("point vibrated_bed --k 0.16 --set S", 2, "NAME=VALUE"),
+        ("point vibrated_bed --k -1", 2, "positive number"),
+        ("point vibrated_bed --k 0", 2, "positive number"),
+        ("point vibrated_bed --k 0.1 -M 2", 2, "-M accepts"),
+        ("point vibrated_bed --k 0.1 --order 4", 2, "--order"),
+        ("point vibrated_bed --k 0.1 --near x", 2, "--near"),
+        (
+            "point vibrated_bad --k 0.1",
+            2,
+            "did you mean `vibrated_bed`?",
+        ),
+        ("point", 2, "Usage"),
+        (
+            "critical vibrated_bed --vary top --from 0 --to 1",
+            2,
+            "switch",
+        ),
+        (
+            "critical vibrated_bed --vary S --from 50 --to 100",
+            2,
+            "--k",
+        ),
+        (
+            "critical vibrated_bed --vary S --from 50 --to 100 --minimize q=1:2",
+            2,
+            "k=A:B",
+        ),
+        (
+            "critical vibrated_bed --vary k --from 0.1 --to 0.11",
+            3,
+            "does not change sign",
+        ),
+        (
+            "sweep vibrated_bed --over k=0.1:0.2 --out /tmp/never.csv",
+            2,
+            "NAME=FROM:TO:COUNT",
+        ),
+        (
+            "sweep vibrated_bed --over S=50:100:2 --out /tmp/never.csv",
+            2,
+            "--k",
+        ),
+        (
+            "sweep vibrated_bed --over k=0.1:0.2:3 --out /nowhere/never.csv",
+            2,
+            "/nowhere",
+        ),
+        ("check /nowhere/a.model", 2, "cannot be read"),
+        ("explain vibrated_bed --operator N4", 2, "possible values"),
+    ] {
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        let answer = landau(&arguments);
+        assert_eq!(
+            answer.status, status,
+            "{line}: {} {}",
+            answer.out, answer.err
+        );
+        assert!(answer.err.contains(words), "{line}: {}", answer.err);
+        assert_eq!(answer.out, "", "{line} prints no number");
+    }
+}
+
+#[test]
+fn help_has_examples() {
+    for command in [
+        "point", "critical", "sweep", "verify", "spectrum", "base", "explain", "check",
+    ] {
+        let answer = landau(&[command, "--help"]);
+        assert_eq!(answer.status, 0);
+        assert!(answer.out.contains("Example"), "{command}: {}", answer.out);
+    }
+    let listed = landau(&["models"]);
+    assert_eq!(listed.status, 0);
+    assert!(listed.out.contains("vibrated_bed"));
+}
+
+#[test]
+fn models_run_from_their_files() {
+    let path = root().join("spec/models/swift_hohenberg.model");
+    let from_file = json(&format!("point {} --k 1", path.display()));
+    assert_eq!(from_file["c2"], json("point swift_hohenberg --k 1")["c2"]);
+}
+
+#[test]
+fn certificates_hold() {
+    for line in [
+        "verify vibrated_bed --k 0.16",
+        "verify swift_hohenberg_strip --k 1.02",
+        "verify plane_poiseuille --k 1 --set R=8000 -M 60",
+        "verify rayleigh_benard --k 3 --set Ra=2000",
+        "verify brusselator --k 1.9",
+        "verify kuramoto_sivashinsky --k 0.9",
+        "verify swift_hohenberg --k 0.95",
+        "verify robin_strip --k 1",
+        "verify granular_couette --k 3 --near 0",
+        "verify vibrated_bed --k 0.1 --set top=neumann",
+    ] {
+        let arguments: Vec<&str> = line.split_whitespace().collect();
+        let answer = landau(&arguments);
+        assert_eq!(answer.status, 0, "{line}: {}\n{}", answer.err, answer.out);
+        for part in [
+            "1. residual order",
+            "2. duality",
+            "3. two routes",
+            "4. nonlinear forms",
+            "5. convergence",
+        ] {
+            assert!(answer.out.contains(part), "{line}: {part} is missing");
+        }
+    }
+}
+
+/// The same file for any number of threads, and after an interruption.
+#[test]
+fn sweeps_are_deterministic_and_resume() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let run = |name: &str, threads: &str, before: Option<&str>| {
+        let out = folder.path().join(name);
+        if let Some(journal) = before {
+            std::fs::write(folder.path().join(format!("{name}.journal")), journal)
+                .expect("a journal");
+        }
+        let status = std::process::Command::new(env!("CARGO_BIN_EXE_landau-under-test"))
+            .args([
+                "sweep",
+                "swift_hohenberg",
+                "--over",
+                "k=0.8:1.2:90",
+                "--over",
+                "r=0.1:0.3:3",
+                "--out",
+            ])
+            .arg(&out)
+            .env("RAYON_NUM_THREADS", threads)
+            .output()
+            .expect("the binary under test runs");
+        assert!(
+            status.status.success(),
+            "{}",
+            String::from_utf8_lossy(&status.stderr)
+        );
+        assert!(!folder.path().join(format!("{name}.journal")).exists());
+        std::fs::read_to_string(out).expect("a table")
+    };
+    let one = run("one.csv", "1", None);
+    assert_eq!(one, run("two.csv", "2", None));
+    // A journal of another sweep, and one cut off in the middle of a line, are no harm.
+    assert_eq!(
+        one,
+        run(
+            "three.csv",
+            "2",
+            Some("\"another sweep\"\n{\"chunk\":0,\"rows\":[]}\n")
+        )
+    );
+    assert_eq!(one.lines().count(), 271);
+    assert!(
+        one.lines()
+            .next()
+            .is_some_and(|h| h == "k,r,c0_re,c0_im,c2_re,c2_im,amplitude,bifurcation,status")
+    );
+    assert!(one.lines().skip(1).all(|line| line.ends_with(",ok")));
+}
+
+/// Every row carries its status; a sweep with failures still writes the others.
+#[test]
+fn failures_are_rows_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("table.csv");
+    let answer = landau(&[
+        "sweep",
+        "vibrated_bed",
+        "--over",
+        "S=0.5:100:2",
+        "--k",
+        "0.16",
+        "--out",
+        &out.to_string_lossy(),
+    ]);
+    assert_eq!(answer.status, 2, "S = 0.5 is out of range: {}", answer.err);
+    assert!(!out.exists());
+}

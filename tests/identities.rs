@@ -1,0 +1,256 @@
+//! Identities that hold for every model: duality, symmetry, second routes, residual order, tape
+//! against emitted code; and that a planted mistake breaks them.
+
+use crate::support::{built, tape};
+use landau_solver::Model;
+use landau_solver::collocation::Discretisation;
+use landau_solver::model::{C64, KernelId, ResidualCall, ResidualId, Structure, evaluate};
+use landau_solver::problem::Problem;
+use landau_solver::study::Setup;
+use landau_solver::study::verify::{defects, duality, floor, second_route, slope};
+use landau_solver::weakly::{self, Selection};
+
+/// Model, wavenumber, M, parameters: off criticality throughout.
+const CASES: [(&str, f64, usize, &[(&str, &str)]); 13] = [
+    ("vibrated_bed", 0.16, 50, &[]),
+    ("vibrated_bed", 0.12, 50, &[]),
+    (
+        "vibrated_bed",
+        0.13,
+        50,
+        &[("top", "flux_free"), ("bulk", "spheres")],
+    ),
+    (
+        "vibrated_bed",
+        0.13,
+        50,
+        &[
+            ("bulk", "disks"),
+            ("viscosity", "variable_prandtl"),
+            ("shear_work", "0"),
+        ],
+    ),
+    ("swift_hohenberg_strip", 1.05, 24, &[("r", "1.2")]),
+    ("swift_hohenberg", 0.97, 10, &[("r", "0.2")]),
+    ("kuramoto_sivashinsky", 0.9, 10, &[("nu", "0.9")]),
+    ("brusselator", 1.9, 10, &[("B", "4.2")]),
+    ("rayleigh_benard", 3.0, 30, &[("Ra", "2000")]),
+    (
+        "rayleigh_benard",
+        2.2,
+        30,
+        &[("Ra", "800"), ("walls", "free"), ("Pr", "0.7")],
+    ),
+    ("plane_poiseuille", 1.0, 60, &[("R", "8000")]),
+    ("plane_poiseuille_flux", 1.0, 60, &[("R", "8000")]),
+    ("robin_strip", 1.0, 24, &[]),
+];
+
+fn with_problem<R>(
+    model: &dyn Model,
+    resolution: usize,
+    settings: &[(&str, &str)],
+    action: impl FnOnce(&Problem) -> R,
+) -> R {
+    let mut setup = Setup::new(model, resolution);
+    for (name, value) in settings {
+        setup
+            .parameters
+            .set_text(model.structure(), name, value)
+            .expect("a parameter");
+    }
+    let base = setup.base(None).expect("a base state");
+    let discretisation = Discretisation::new();
+    let problem = Problem::new(model, &base, &discretisation, setup.effective_resolution());
+    action(&problem.expect("a problem"))
+}
+
+/// The order of the residual in A, by the last two halvings clear of rounding.
+fn residual_order(problem: &Problem, k: f64) -> f64 {
+    let point = weakly::point(problem, k, Selection::Leading).expect("a point");
+    let expansion = point.third_order().expect("third order");
+    slope(&defects(&expansion), &floor(&expansion)).0
+}
+
+#[test]
+fn residual_falls_as_fourth_power() {
+    for (name, k, m, settings) in CASES {
+        let order = with_problem(built(name).as_ref(), m, settings, |p| residual_order(p, k));
+        assert!(
+            (order - 4.0).abs() < 0.08,
+            "{name} {settings:?} at k = {k}: order {order}"
+        );
+    }
+}
+
+#[test]
+fn duality_by_quadrature() {
+    for (name, k, m, settings) in CASES {
+        let worst = with_problem(built(name).as_ref(), m, settings, |p| {
+            (0..6).map(|seed| duality(p, k, seed)).fold(0.0, f64::max)
+        });
+        assert!(worst < 1e-10, "{name} {settings:?}: {worst:.2e}");
+    }
+}
+
+#[test]
+fn forms_are_symmetric_and_equal_the_series_route() {
+    for (name, _, m, settings) in CASES {
+        for degree in [2, 3] {
+            let (difference, asymmetry) = with_problem(built(name).as_ref(), m, settings, |p| {
+                second_route(p, degree)
+            });
+            assert!(
+                difference < 1e-10,
+                "{name} N{degree}: {difference:.2e} from the series route"
+            );
+            assert!(
+                asymmetry < 1e-12,
+                "{name} N{degree}: asymmetry {asymmetry:.2e}"
+            );
+        }
+    }
+}
+
+/// The same kernels interpreted: the same numbers to rounding.
+#[test]
+fn tape_equals_emitted_code() {
+    for name in [
+        "vibrated_bed",
+        "rayleigh_benard",
+        "plane_poiseuille_flux",
+        "granular_couette",
+        "robin_strip",
+    ] {
+        let (emitted, tape) = (built(name), tape(name));
+        assert_eq!(emitted.structure(), tape.structure(), "{name}");
+        with_problem(emitted.as_ref(), 20, &[], |problem| {
+            for xi in [-0.8, 0.1, 0.93] {
+                let point = problem.base.point(emitted.as_ref(), xi, 1.3);
+                for kernel in [
+                    KernelId::Base,
+                    KernelId::Linear,
+                    KernelId::Adjoint,
+                    KernelId::Nonlinear,
+                    KernelId::Conditions(0),
+                    KernelId::Outputs,
+                ] {
+                    let (a, b) = (
+                        evaluate(emitted.as_ref(), kernel, &point),
+                        evaluate(&tape, kernel, &point),
+                    );
+                    assert_eq!(a, b, "{name} {kernel:?}");
+                }
+                let structure = emitted.structure();
+                let c = evaluate(emitted.as_ref(), KernelId::Nonlinear, &point);
+                let jets = |seed: f64| -> Vec<C64> {
+                    (0..structure.form_jets.len())
+                        .map(|i| C64::new((seed + i as f64).sin(), (seed * i as f64).cos()))
+                        .collect()
+                };
+                let (x, y) = (jets(0.3), jets(1.7));
+                for row in 0..structure.balances.len() {
+                    let (a, b) = (
+                        emitted.form(2, row, &c, &[&x, &y]),
+                        tape.form(2, row, &c, &[&x, &y]),
+                    );
+                    assert!(
+                        (a - b).norm() <= 1e-13 * a.norm().max(1.0),
+                        "{name} row {row}: {a} {b}"
+                    );
+                }
+            }
+        });
+    }
+}
+
+/// The continuous adjoint, discretised on its own, against the direct problem (P figure 3).
+#[test]
+fn adjoint_eigenvalue_along_the_sweep() {
+    with_problem(built("vibrated_bed").as_ref(), 100, &[], |problem| {
+        for k in [0.04, 0.07, 0.1, 0.13, 0.16, 0.174] {
+            let pair = landau_solver::spectrum::leading(problem, k).expect("a mode");
+            let adjoint = landau_solver::study::quadrature::adjoint_mode(problem, k, pair.c)
+                .expect("its adjoint");
+            let difference = (adjoint.c.conj() - pair.c).norm();
+            assert!(difference < 1e-8, "k = {k}: {difference:.2e}");
+        }
+    });
+}
+
+/// At (16, 400) the difference is truncation, and falls with M.
+#[test]
+fn adjoint_difference_falls_with_resolution() {
+    let settings: &[(&str, &str)] = &[("F", "16"), ("S", "400")];
+    let difference = |m: usize| {
+        with_problem(built("vibrated_bed").as_ref(), m, settings, |problem| {
+            let pair = landau_solver::spectrum::leading(problem, 0.1).expect("a mode");
+            let adjoint = landau_solver::study::quadrature::adjoint_mode(problem, 0.1, pair.c)
+                .expect("its adjoint");
+            (adjoint.c.conj() - pair.c).norm()
+        })
+    };
+    let (coarse, fine) = (difference(50), difference(120));
+    assert!(
+        fine < 0.1 * coarse,
+        "{coarse:.2e} at M = 50, {fine:.2e} at M = 120"
+    );
+}
+
+/// A model whose coefficients of one nonlinear term have the wrong sign.
+struct Planted {
+    model: Box<dyn Model>,
+    coefficient: usize,
+}
+
+impl Model for Planted {
+    fn structure(&self) -> &Structure {
+        self.model.structure()
+    }
+
+    fn sources(&self) -> Vec<(String, String)> {
+        self.model.sources()
+    }
+
+    fn evaluate(&self, kernel: KernelId, point: &[f64], out: &mut [f64]) {
+        self.model.evaluate(kernel, point, out);
+        if kernel == KernelId::Nonlinear {
+            out[self.coefficient] = -out[self.coefficient];
+        }
+    }
+
+    fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64 {
+        self.model.form(degree, row, c, x)
+    }
+
+    fn residual(&self, residual: ResidualId, point: &[f64], call: ResidualCall<'_>) {
+        self.model.residual(residual, point, call);
+    }
+}
+
+/// A wrong sign in one emitted term breaks the residual order and the second route.
+#[test]
+fn planted_sign_is_found() {
+    let count = built("vibrated_bed").structure().form_coefficients;
+    for coefficient in [1, count / 3, 2 * count / 3] {
+        let planted = Planted {
+            model: built("vibrated_bed"),
+            coefficient,
+        };
+        let (order, second, third) = with_problem(&planted, 50, &[], |problem| {
+            (
+                residual_order(problem, 0.16),
+                second_route(problem, 2).0,
+                second_route(problem, 3).0,
+            )
+        });
+        assert!(
+            second.max(third) > 1e-6,
+            "coefficient {coefficient} passed the second route"
+        );
+        assert!(
+            !((order - 4.0).abs() < 0.08),
+            "coefficient {coefficient} passed the residual order: {order}"
+        );
+    }
+}

@@ -1,0 +1,3 @@
+fn main() -> std::process::ExitCode {
+    landau_solver::cli::run(landau_spec::models())
+}

@@ -1,0 +1,11 @@
+//! The test families. Adding a case is adding a file (diagnostics, golden text) or a function.
+
+mod command_line;
+mod diagnostics;
+mod formulas;
+mod fuzz;
+mod golden;
+mod identities;
+mod published;
+mod published_bed;
+mod support;
