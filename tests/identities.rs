@@ -11,7 +11,14 @@ use landau_solver::study::verify::{defects, duality, floor, second_route, slope}
 use landau_solver::weakly::{self, Selection};
 
 /// Model, wavenumber, M, parameters: off criticality throughout.
-const CASES: [(&str, f64, usize, &[(&str, &str)]); 13] = [
+type Case = (
+    &'static str,
+    f64,
+    usize,
+    &'static [(&'static str, &'static str)],
+);
+
+const CASES: [Case; 13] = [
     ("vibrated_bed", 0.16, 50, &[]),
     ("vibrated_bed", 0.12, 50, &[]),
     (
@@ -249,7 +256,7 @@ fn planted_sign_is_found() {
             "coefficient {coefficient} passed the second route"
         );
         assert!(
-            !((order - 4.0).abs() < 0.08),
+            order.is_nan() || (order - 4.0).abs() >= 0.08,
             "coefficient {coefficient} passed the residual order: {order}"
         );
     }

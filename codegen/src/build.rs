@@ -60,7 +60,7 @@ pub fn generate_folder(root: &Path, out: &Path) -> Result<(), String> {
         fs::write(out.join(format!("{name}.rs")), code).map_err(|e| e.to_string())?;
         let _ = writeln!(
             index,
-            "#[doc = {title:?}]\npub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}"
+            "// Straight-line code is not judged by taste.\n#[allow(clippy::all)]\n#[doc = {title:?}]\npub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}"
         );
         let _ = writeln!(list, "    Box::new({name}::Generated::new()),");
     }

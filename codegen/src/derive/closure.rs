@@ -213,9 +213,8 @@ fn multiplier(
         };
         system.swap(rank, found);
         let pivot = system[rank][column];
-        for entry in 0..=rows {
-            let value = system[rank][entry];
-            system[rank][entry] = graph.divide_terms(value, pivot);
+        for entry in &mut system[rank] {
+            *entry = graph.divide_terms(*entry, pivot);
         }
         let row = system[rank].clone();
         for (r, other) in system.iter_mut().enumerate() {

@@ -165,7 +165,13 @@ impl<'a> Deriver<'a> {
         };
         self.check_determined(&linear, profiles, mistakes);
         // base state
-        let (base, solved, base_integrals) = self.base_problem(&balances, mistakes)?;
+        let problem = self.base_problem(&balances, mistakes)?;
+        let BaseProblem {
+            rows: base,
+            solved,
+            integrals: base_integrals,
+            conditions,
+        } = problem;
         // boundary conditions, adjoint conditions, closures: one set for each case of the switches
         let switches = self.switches();
         let mut cases = Vec::new();
@@ -177,7 +183,7 @@ impl<'a> Deriver<'a> {
                 pairing: &pairing,
                 solved: &solved,
                 switches: &switches,
-                base_conditions: base.conditions,
+                base_conditions: conditions,
             };
             cases.extend(case::derive(&mut self, problem, choices, mistakes));
         }
@@ -205,7 +211,7 @@ impl<'a> Deriver<'a> {
             nonlinear,
             pairing,
             parity,
-            base: base.rows,
+            base,
             solved,
             base_integrals,
             switches,
@@ -354,7 +360,7 @@ impl<'a> Deriver<'a> {
         &mut self,
         balances: &[Form],
         mistakes: &mut Vec<Diagnostic>,
-    ) -> Option<(BaseRows, Vec<usize>, Vec<(Id, Id)>)> {
+    ) -> Option<BaseProblem> {
         let model = self.model;
         let closed = &model.base.closed;
         let mut opener = Opener::new(&model.laws, closed, &self.uniform);
@@ -398,14 +404,12 @@ impl<'a> Deriver<'a> {
                 field: None,
                 order: 0,
             });
-            return Some((
-                BaseRows {
-                    rows: rows.collect(),
-                    conditions: 0,
-                },
+            return Some(BaseProblem {
+                rows: rows.collect(),
                 solved,
                 integrals,
-            ));
+                conditions: 0,
+            });
         }
         let place = model.base.location.clone();
         if rows.len() != profiles.len() {
@@ -462,14 +466,12 @@ impl<'a> Deriver<'a> {
             })
             .collect();
         let integrals = self.base_integrals(mistakes);
-        Some((
-            BaseRows {
-                rows: base_rows,
-                conditions,
-            },
+        Some(BaseProblem {
+            rows: base_rows,
             solved,
             integrals,
-        ))
+            conditions,
+        })
     }
 
     fn base_integrals(&mut self, mistakes: &mut Vec<Diagnostic>) -> Vec<(Id, Id)> {
@@ -541,8 +543,12 @@ impl<'a> Deriver<'a> {
     }
 }
 
-struct BaseRows {
+/// What the base state has to obey.
+struct BaseProblem {
     rows: Vec<BaseRow>,
+    solved: Vec<usize>,
+    /// Integrands and values.
+    integrals: Vec<(Id, Id)>,
     /// How many conditions (at walls and integrals) determine the base state.
     conditions: usize,
 }

@@ -279,10 +279,10 @@ impl Reader {
 
     /// An optional doc string.
     fn doc(&self, input: ParseStream) -> String {
-        if input.peek(syn::LitStr) {
-            if let Ok(text) = input.parse::<syn::LitStr>() {
-                return text.value();
-            }
+        if input.peek(syn::LitStr)
+            && let Ok(text) = input.parse::<syn::LitStr>()
+        {
+            return text.value();
         }
         String::new()
     }

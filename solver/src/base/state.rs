@@ -117,8 +117,7 @@ impl BaseState {
             for row in &structure.base.rows {
                 let residual = values[position];
                 position += 1 + row.jets.len();
-                // NaN must not pass.
-                if !(residual.abs() < 1e-9) {
+                if residual.is_nan() || residual.abs() >= 1e-9 {
                     return Err(Error::computation(format!(
                         "the base state does not satisfy the balance `{}`: residual {residual:.3e} at {} = {}",
                         structure.balances[row.balance],

@@ -57,7 +57,7 @@ impl Grid {
     /// Barycentric weights up to a common factor.
     fn weights(&self) -> Vec<f64> {
         let n = self.len();
-        let alternate = |j: usize| if j % 2 == 0 { 1.0 } else { -1.0 };
+        let alternate = |j: usize| if j.is_multiple_of(2) { 1.0 } else { -1.0 };
         (0..n)
             .map(|j| match self.kind {
                 GridKind::Gauss(_) => alternate(j) * (1.0 - self.nodes[j] * self.nodes[j]).sqrt(),

@@ -76,10 +76,13 @@ impl Layout {
     }
 }
 
+/// From which grid, to which, and the order of the derivative.
+type MatrixKey = (GridKind, GridKind, usize);
+
 /// Matrices between grids, made once and shared.
 #[derive(Default)]
 pub struct Discretisation {
-    matrices: Mutex<HashMap<(GridKind, GridKind, usize), Arc<Mat<f64>>>>,
+    matrices: Mutex<HashMap<MatrixKey, Arc<Mat<f64>>>>,
 }
 
 impl Discretisation {

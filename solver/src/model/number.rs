@@ -205,8 +205,8 @@ impl<T: Number, const N: usize> Div for Truncated<T, N> {
         let mut quotient = [T::from(0.0); N];
         for n in 0..N {
             let mut rest = self.0[n];
-            for m in 0..n {
-                rest = rest - quotient[m] * other.0[n - m];
+            for (m, &known) in quotient.iter().enumerate().take(n) {
+                rest = rest - known * other.0[n - m];
             }
             quotient[n] = rest / other.0[0];
         }

@@ -76,9 +76,9 @@ pub fn floor(expansion: &Expansion) -> (f64, f64) {
 /// The slope between the two smallest amplitudes whose defects stand clear of the floor.
 pub fn slope(defects: &[(f64, f64)], floor: &(f64, f64)) -> (f64, f64) {
     let clear = |&(a, d): &(f64, f64)| d > ABOVE_FLOOR * (floor.0 + floor.1 * a) && d > 0.0;
-    let pairs = defects.windows(2).filter(|w| clear(&w[1]));
+    let mut pairs = defects.windows(2).filter(|w| clear(&w[1]));
     pairs
-        .last()
+        .next_back()
         .map_or((f64::NAN, f64::NAN), |w| ((w[0].1 / w[1].1).log2(), w[0].0))
 }
 
