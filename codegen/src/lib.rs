@@ -6,7 +6,7 @@
 //! |---|---|---|---|
 //! | parse | [`syntax`] | text | [`syntax::tree::ModelTree`] |
 //! | resolve | [`model`] | syntax tree | [`model::Model`], on one [`graph::Graph`] |
-//! | derive | [`derive`] | checked model | [`derive::Derivation`]: L, L†, N2, N3, conditions |
+//! | derive | [`mod@derive`] | checked model | [`derive::Derivation`]: L, L†, N2, N3, conditions |
 //! | lower | [`kernel`] | operators | [`kernel::ModelKernels`]: straight-line programs |
 //! | emit | [`emit`] | kernels, operators | Rust source, readable text |
 //!

@@ -127,7 +127,7 @@ impl Form {
         derivative
     }
 
-    /// Σ_m taylor[m] · (self without its base part)^m.
+    /// Σ_m `taylor[m]` · (self without its base part)^m.
     pub fn compose(&self, graph: &mut Graph, taylor: &[Id]) -> Form {
         let order = taylor.len() - 1;
         let mut increment = self.clone();

@@ -1,6 +1,6 @@
 //! Checked model → operators: expansion, L, L† with its boundary conditions, N2, N3.
 //!
-//! Each pass is a function from one type to the next; [`derive`] shows the whole of it.
+//! Each pass is a function from one type to the next; [`derive()`] shows the whole of it.
 
 mod boundary;
 mod case;
