@@ -5,6 +5,7 @@
 
 mod assemble;
 mod lower;
+mod polarise;
 
 pub use assemble::{ModelKernels, kernels};
 pub use lower::Lowering;

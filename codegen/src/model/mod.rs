@@ -1,5 +1,7 @@
 //! The checked model: names resolved, definitions expanded, every expression a node of one graph.
 
+mod amplitude;
+mod parameter;
 mod resolve;
 mod scope;
 mod statement;

@@ -551,19 +551,6 @@ impl Names {
         result
     }
 
-    /// The index of a parameter seen from a scope; a law file's own are registered on first use.
-    pub fn find_parameter(&mut self, name: &str, scope: usize) -> Option<usize> {
-        if let Some(known) = self.parameters.iter().position(|p| p.name == name) {
-            let visible = scope == 0 || self.scopes[scope].parameters.contains_key(name);
-            return visible.then_some(known);
-        }
-        let item = self.scopes[scope].parameters.get(name).cloned()?;
-        let parameter = self.constant_parameter(&item)?;
-        self.parameters.push(parameter);
-        self.used.push(true);
-        Some(self.parameters.len() - 1)
-    }
-
     fn unknown(&self, name: &str, place: &Location, view: &View) -> Diagnostic {
         let scope = &self.scopes[view.scope];
         let mut candidates: Vec<&str> = view.arguments.iter().map(|(n, _)| n.as_str()).collect();
@@ -596,108 +583,6 @@ impl Names {
         }
         let expected = "a field, a parameter, a law or a definition";
         Diagnostic::new(place.clone(), format!("`{name}` is not known"), expected).maybe_hint(hint)
-    }
-
-    /// The rational value of an expression in numbers alone.
-    pub fn constant(&mut self, expression: &Expression) -> Resolved<f64> {
-        let id = self.expression(
-            expression,
-            &View {
-                scope: 0,
-                context: Context::Constant,
-                arguments: &[],
-            },
-        );
-        let id = id?;
-        self.numeric(id).filter(|v| v.is_finite()).ok_or_else(|| {
-            Diagnostic::new(
-                expression.location.clone(),
-                "this is not a number",
-                "a number",
-            )
-        })
-    }
-
-    /// The value of an expression without atoms.
-    fn numeric(&self, id: Id) -> Option<f64> {
-        match self.graph.node(id) {
-            Node::Number(value) => value.to_f64(),
-            Node::Pi => Some(std::f64::consts::PI),
-            Node::Sum(constant, terms) => {
-                terms.iter().try_fold(constant.to_f64()?, |sum, (t, c)| {
-                    Some(sum + self.numeric(*t)? * c.to_f64()?)
-                })
-            }
-            Node::Product(factors) => factors.iter().try_fold(1.0, |product, (b, e)| {
-                Some(product * self.numeric(*b)?.powf(e.to_f64()?))
-            }),
-            _ => None,
-        }
-    }
-
-    fn constant_parameter(&mut self, item: &ParameterItem) -> Option<Parameter> {
-        self.parameter(item).ok()
-    }
-
-    /// A declared parameter.
-    pub fn parameter(&mut self, item: &ParameterItem) -> Resolved<Parameter> {
-        let (mut lower, mut upper, mut choices) = (f64::NEG_INFINITY, f64::INFINITY, Vec::new());
-        match &item.domain {
-            ParameterDomain::Any => {}
-            ParameterDomain::Range(from, to) => {
-                lower = from.as_ref().map_or(Ok(lower), |e| self.constant(e))?;
-                upper = to.as_ref().map_or(Ok(upper), |e| self.constant(e))?;
-            }
-            ParameterDomain::Choices(names) => {
-                choices = names.iter().map(|n| n.text.clone()).collect();
-                upper = choices.len() as f64 - 1.0;
-                lower = 0.0;
-            }
-        }
-        let default = match &item.default {
-            Some(ParameterDefault::Value(value)) => self.constant(value)?,
-            Some(ParameterDefault::Choice(choice)) => {
-                match choices.iter().position(|c| *c == choice.text) {
-                    Some(position) => position as f64,
-                    None => {
-                        let message = format!("`{}` is not one of the choices", choice.text);
-                        let near = nearest(&choice.text, choices.iter().map(String::as_str));
-                        return Err(Diagnostic::new(
-                            choice.location.clone(),
-                            message,
-                            format!("one of {}", choices.join(", ")),
-                        )
-                        .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
-                    }
-                }
-            }
-            None => {
-                let message = format!("the parameter `{}` has no default value", item.name.text);
-                return Err(Diagnostic::new(
-                    item.name.location.clone(),
-                    message,
-                    format!("`{} = value`", item.name.text),
-                ));
-            }
-        };
-        if !(lower..=upper).contains(&default) {
-            let message = format!("the default {default} lies outside {lower}..{upper}");
-            return Err(Diagnostic::new(
-                item.name.location.clone(),
-                message,
-                format!("a default in {lower}..{upper}"),
-            ));
-        }
-        let (name, doc) = (item.name.text.clone(), item.doc.clone());
-        Ok(Parameter {
-            name,
-            doc,
-            default,
-            lower,
-            upper,
-            choices,
-            location: item.name.location.clone(),
-        })
     }
 }
 

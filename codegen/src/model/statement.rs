@@ -1,7 +1,7 @@
 //! Each block of the spec, checked and made part of the model.
 
-use super::resolve::{Imported, beginning, bind_imports, check_name, twice, view};
-use super::scope::{Context, Names, Resolved, is_two};
+use super::resolve::{Imported, beginning, bind_imports, check_name, twice};
+use super::scope::{Context, Names, Resolved};
 use super::*;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::graph::{Jet, Node, Operator};
@@ -58,7 +58,10 @@ pub(super) fn model(
         .iter()
         .filter_map(|m| keep(mean(m, names), mistakes))
         .collect();
-    let amplitude = keep(amplitude(tree.amplitude.as_ref(), &fields, names), mistakes);
+    let amplitude = keep(
+        amplitude::amplitude(tree.amplitude.as_ref(), &fields, names),
+        mistakes,
+    );
     let outputs = tree
         .outputs
         .iter()
@@ -291,7 +294,7 @@ fn difference(equation: &Equation, names: &mut Names) -> Resolved<Id> {
     Ok(names.graph.sub(left, right))
 }
 
-fn field_index(name: &Name, names: &Names) -> Resolved<usize> {
+pub(super) fn field_index(name: &Name, names: &Names) -> Resolved<usize> {
     names.fields.get(&name.text).copied().ok_or_else(|| {
         let mut fields: Vec<&str> = names.fields.keys().map(String::as_str).collect();
         fields.sort_unstable();
@@ -525,114 +528,6 @@ fn mean(item: &MeanItem, names: &mut Names) -> Resolved<Closure> {
             integral: integral(condition, names)?,
         },
     })
-}
-
-fn amplitude(
-    item: Option<&AmplitudeItem>,
-    fields: &[Field],
-    names: &mut Names,
-) -> Resolved<Amplitude> {
-    match item {
-        // Without a word of the user: ∫ Σ |q|² dy = 1.
-        None => {
-            let one = names.graph.one();
-            let profiles = (0..fields.len()).filter(|&f| !fields[f].uniform);
-            Ok(Amplitude::Integral {
-                weights: profiles.map(|f| (f, one)).collect(),
-                value: one,
-            })
-        }
-        Some(AmplitudeItem::Integral { integrand, value }) => {
-            let mut weights = Vec::new();
-            quadratic(integrand, None, names, &mut weights)?;
-            let value = names.resolve(value, Context::Amplitude)?;
-            Ok(Amplitude::Integral { weights, value })
-        }
-        Some(AmplitudeItem::Point {
-            place,
-            field,
-            value,
-        }) => {
-            let place = match place {
-                Some(place) => Some(names.resolve(place, Context::Constant)?),
-                None => None,
-            };
-            let field = modulus_of(field, names)?;
-            let value = names.resolve(value, Context::Amplitude)?;
-            Ok(Amplitude::Point {
-                field,
-                place,
-                value,
-            })
-        }
-    }
-}
-
-/// The terms weight · |field|² of a sum.
-fn quadratic(
-    expression: &Expression,
-    weight: Option<Id>,
-    names: &mut Names,
-    found: &mut Vec<(usize, Id)>,
-) -> Resolved<()> {
-    match &expression.kind {
-        ExpressionKind::Binary(Binary::Add, left, right) => {
-            quadratic(left, weight, names, found)?;
-            quadratic(right, weight, names, found)
-        }
-        ExpressionKind::Binary(Binary::Multiply, left, right) => {
-            let (factor, square) = if contains_modulus(right) {
-                (left, right)
-            } else {
-                (right, left)
-            };
-            let factor = names.expression(factor, &view(Context::Profile))?;
-            let weight = match weight {
-                Some(weight) => names.graph.mul(weight, factor),
-                None => factor,
-            };
-            quadratic(square, Some(weight), names, found)
-        }
-        ExpressionKind::Binary(Binary::Power, base, exponent) if matches!(&exponent.kind, ExpressionKind::Number(two) if is_two(two)) =>
-        {
-            let field = modulus_of(base, names)?;
-            let one = names.graph.one();
-            found.push((field, weight.unwrap_or(one)));
-            Ok(())
-        }
-        _ => Err(Diagnostic::new(
-            expression.location.clone(),
-            "the amplitude is a sum of squared moduli",
-            "`weight*|field|^2`",
-        )),
-    }
-}
-
-fn contains_modulus(expression: &Expression) -> bool {
-    match &expression.kind {
-        ExpressionKind::Modulus(_) => true,
-        ExpressionKind::Binary(_, a, b) => contains_modulus(a) || contains_modulus(b),
-        ExpressionKind::Negative(inner) => contains_modulus(inner),
-        _ => false,
-    }
-}
-
-fn modulus_of(expression: &Expression, names: &mut Names) -> Resolved<usize> {
-    match &expression.kind {
-        ExpressionKind::Modulus(inner) => modulus_of(inner, names),
-        ExpressionKind::Name(text) => {
-            let name = Name {
-                text: text.clone(),
-                location: expression.location.clone(),
-            };
-            field_index(&name, names)
-        }
-        _ => Err(Diagnostic::new(
-            expression.location.clone(),
-            "the amplitude measures fields",
-            "`|field|` or the name of a field",
-        )),
-    }
 }
 
 fn output(item: &OutputItem, names: &mut Names) -> Resolved<Output> {
