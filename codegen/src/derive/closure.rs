@@ -5,9 +5,9 @@
 
 use super::Deriver;
 use super::boundary::{Simplifier, at_zero_wavenumber, demands};
-use super::case::{BaseRules, Case, CaseProblem, Walls, at_end};
 use super::form::Form;
 use super::linear::Term;
+use super::wall::{BaseRules, CaseProblem, Walls, at_end};
 use crate::diagnostic::Diagnostic;
 use crate::graph::{Graph, Id, Jet, Rational, Variable};
 use crate::model::Closure;
@@ -118,36 +118,6 @@ pub(super) fn derive(
         }
     }
     closures
-}
-
-/// A declared conserved integral must be conserved in some case.
-pub(super) fn check(deriver: &Deriver, cases: &[Case], mistakes: &mut Vec<Diagnostic>) {
-    let declared: Vec<_> = deriver
-        .model
-        .mean
-        .iter()
-        .filter_map(|closure| match closure {
-            Closure::Conserved { location, .. } => Some(location),
-            _ => None,
-        })
-        .collect();
-    let conserved = |case: &Case| {
-        case.closures
-            .iter()
-            .filter(|c| matches!(c, CaseClosure::Conserved { .. }))
-            .count()
-    };
-    let most = cases.iter().map(conserved).max().unwrap_or(0);
-    if let (Some(location), true) = (declared.last(), most < declared.len()) {
-        mistakes.push(
-            Diagnostic::new(
-                (*location).clone(),
-                "this integral is not conserved",
-                "an integral that the balances and the walls keep constant",
-            )
-            .hint("its density must change by a flux that vanishes at both ends"),
-        );
-    }
 }
 
 /// The linear part at k = 0.

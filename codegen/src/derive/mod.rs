@@ -11,15 +11,17 @@ mod linear;
 mod open;
 mod pairing;
 mod parity;
+mod wall;
 
 pub use boundary::{Combination, Symbol};
-pub use case::{AdjointCondition, BaseCondition, Case, WallCondition};
+pub use case::{AdjointCondition, Case};
 pub use closure::CaseClosure;
 pub use expand::base_value;
 pub use form::{Form, Monomial};
 pub use linear::Term;
 pub use open::Opener;
 pub use parity::Parity;
+pub use wall::{BaseCondition, WallCondition};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::graph::{Graph, Id, Rational};
@@ -176,7 +178,7 @@ impl<'a> Deriver<'a> {
         let switches = self.switches();
         let mut cases = Vec::new();
         for choices in self.choices(&switches, mistakes)? {
-            let problem = case::CaseProblem {
+            let problem = wall::CaseProblem {
                 linear: &linear,
                 adjoint: &adjoint,
                 divisors: &divisors,
@@ -187,7 +189,7 @@ impl<'a> Deriver<'a> {
             };
             cases.extend(case::derive(&mut self, problem, choices, mistakes));
         }
-        closure::check(&self, &cases, mistakes);
+        case::check_conserved(&self, &cases, mistakes);
         let walls: Vec<&Form> = cases
             .iter()
             .flat_map(|c| c.conditions.iter().map(|w| &w.form))

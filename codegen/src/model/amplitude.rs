@@ -1,6 +1,6 @@
 //! The normalisation: an integral of squared moduli, or a point value.
 
-use super::resolve::view;
+use super::mistake::view;
 use super::scope::{Context, Names, Resolved, is_two};
 use super::statement::field_index;
 use super::{Amplitude, Field};

@@ -1,6 +1,8 @@
 //! The checked model: names resolved, definitions expanded, every expression a node of one graph.
 
 mod amplitude;
+mod import;
+mod mistake;
 mod parameter;
 mod resolve;
 mod scope;

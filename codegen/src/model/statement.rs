@@ -1,6 +1,7 @@
 //! Each block of the spec, checked and made part of the model.
 
-use super::resolve::{Imported, beginning, bind_imports, check_name, twice};
+use super::import::{Imported, bind_imports};
+use super::mistake::{beginning, check_name, twice};
 use super::scope::{Context, Names, Resolved};
 use super::*;
 use crate::diagnostic::{Diagnostic, nearest};

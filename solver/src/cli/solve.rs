@@ -168,7 +168,7 @@ pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()>
     setup.with_point(&state, k, selection(common), |point| {
         let error = accuracy::accuracy(setup, &state, point)?;
         let resonance = accuracy::resonance(point)?;
-        let slopes = sensitivity::parameters(setup, &state, &point.expansion.pair)?;
+        let slopes = sensitivity::parameters(setup, &state, &point.expansion.pair);
         let values = outputs(point);
         if error.c2 > UNCONVERGED * point.c2.norm()
             || error.c0 > UNCONVERGED * point.c0.norm().max(1e-9)
@@ -190,7 +190,7 @@ pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()>
             for (index, slope) in &slopes {
                 derivatives.insert(
                     structure.parameters[*index].name.clone(),
-                    report::complex(*slope),
+                    slope.map_or(Value::Null, report::complex),
                 );
             }
             say!(
@@ -243,7 +243,7 @@ pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()>
             say!(
                 "  dc0/d{} = {}",
                 structure.parameters[*index].name,
-                report::shown(*slope)
+                slope.map_or("unknown".into(), report::shown)
             );
         }
         Ok(())

@@ -24,10 +24,11 @@ pub struct Resonance {
     pub second_harmonic: f64,
 }
 
-/// Differences between resolutions and between routes.
+/// Differences between resolutions and between routes; infinite where the finer problem has no
+/// answer.
 ///
 /// # Errors
-/// A finer problem that cannot be solved.
+/// A c2 by quadrature that cannot be formed.
 pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Accuracy> {
     let mut found = Accuracy {
         c0: 1e-15 * point.c0.norm(),
@@ -37,15 +38,16 @@ pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<
     if setup.effective_resolution() > 0 {
         let mut finer = setup.clone();
         finer.resolution = setup.resolution + setup.resolution.div_ceil(2);
-        let (c0, c2) = finer.with_point(base, k, Selection::Near(point.c0), |finer| {
-            Ok((finer.c0, finer.c2))
-        })?;
+        let near = Selection::Near(point.c0);
+        let (c0, c2) = finer
+            .with_point(base, k, near, |finer| Ok((finer.c0, finer.c2)))
+            .unwrap_or((C64::new(f64::INFINITY, 0.0), C64::new(f64::INFINITY, 0.0)));
         found.c0 = found.c0.max((c0 - point.c0).norm());
         found.c2 = found.c2.max((c2 - point.c2).norm());
     }
     let problem = point.expansion.problem;
-    if problem.adjoint().is_ok() {
-        let adjoint = adjoint_mode(problem, k, point.c0)?;
+    // Without adjoint conditions, or where the adjoint mode hides in a cluster, one route remains.
+    if let Ok(adjoint) = adjoint_mode(problem, k, point.c0) {
         found.c0 = found.c0.max((adjoint.c.conj() - point.c0).norm());
         if let Some(c2) = second_landau(point, &adjoint)? {
             found.c2 = found.c2.max((c2 - point.c2).norm());

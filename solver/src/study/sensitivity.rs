@@ -15,16 +15,14 @@ const STEP: f64 = 1e-3;
 /// dc0/dp for every parameter that is a number and not determined by the base.
 ///
 /// The operators' derivative is a fourth-order difference; modes are not differenced.
-///
-/// # Errors
-/// Base states next to the given one that cannot be found.
-pub fn parameters(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Result<Vec<(usize, C64)>> {
+/// `None` where a base state next to the given one cannot be found.
+pub fn parameters(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Vec<(usize, Option<C64>)> {
     let structure = setup.model.structure();
     let free: Vec<usize> = (0..structure.parameters.len())
         .filter(|&i| structure.parameters[i].choices.is_empty() && !setup.parameters.automatic[i])
         .collect();
     free.into_par_iter()
-        .map(|index| one(setup, base, pair, index).map(|slope| (index, slope)))
+        .map(|index| (index, one(setup, base, pair, index).ok()))
         .collect()
 }
 

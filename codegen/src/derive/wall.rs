@@ -1,0 +1,149 @@
+//! What the two ends make of the operators: base conditions as rules, direct conditions reduced.
+
+use super::Deriver;
+use super::boundary::{Combination, Reduced, Simplifier, boundary_form, reduce, split};
+use super::form::Form;
+use super::linear::Term;
+use crate::graph::{Graph, Id, Jet, Node, Rational, Variable};
+use crate::model::End;
+use num_traits::One;
+use std::collections::BTreeMap;
+
+/// A condition on the perturbation: B(X⁰ + X') − B(X⁰) = 0.
+#[derive(Clone, Debug)]
+pub struct WallCondition {
+    pub end: End,
+    /// Terms of degree 1 and higher.
+    pub form: Form,
+    /// The condition in the full state, unexpanded.
+    pub residual: Id,
+    /// The field whose collocation row it replaces.
+    pub field: usize,
+}
+
+/// A condition on the base state.
+#[derive(Clone, Debug)]
+pub struct BaseCondition {
+    pub end: End,
+    /// Vanishes at that end; laws opaque.
+    pub residual: Id,
+}
+
+/// What a case is derived from.
+pub(super) struct CaseProblem<'a> {
+    pub linear: &'a [Term],
+    pub adjoint: &'a [Term],
+    pub divisors: &'a [Id],
+    pub pairing: &'a [usize],
+    pub solved: &'a [usize],
+    pub switches: &'a [usize],
+    /// How many conditions the base state needs.
+    pub base_conditions: usize,
+}
+
+/// The boundary form and what each end makes of it.
+pub(super) struct Walls {
+    pub form: BTreeMap<Jet, Combination>,
+    pub reduced: Vec<(End, Reduced)>,
+}
+
+/// What the base's own boundary conditions say at each end: base atom → expression.
+pub(super) type BaseRules = Vec<(End, (usize, u8), Id)>;
+
+/// Solves each base condition that is linear in its highest base derivative for it.
+pub(super) fn base_rules(graph: &mut Graph, conditions: &[BaseCondition]) -> BaseRules {
+    let mut rules = BaseRules::new();
+    for condition in conditions {
+        let mut atoms: Vec<(u8, usize)> = Vec::new();
+        for node in graph.topological(&[condition.residual]) {
+            if let Node::Base(field, order) = graph.node(node) {
+                atoms.push((*order, *field));
+            }
+        }
+        atoms.sort_unstable();
+        let Some(&(order, field)) = atoms.last() else {
+            continue;
+        };
+        // A law depends on values of the fields, so it is a coefficient beside a derivative; where
+        // it could hide a further dependence the condition is left alone.
+        let hides = |n: &Node| matches!(n, Node::BaseLaw(atom) if order == 0 || atom.y > 0);
+        if graph.any(condition.residual, hides) {
+            continue;
+        }
+        let slope = graph.differentiate(condition.residual, Variable::Base(field, order));
+        let curvature = graph.differentiate(slope, Variable::Base(field, order));
+        if !graph.vanishes(curvature) || graph.vanishes(slope) {
+            continue;
+        }
+        // residual = slope · atom + rest
+        let atom = graph.base(field, order);
+        let product = graph.mul(slope, atom);
+        let rest = graph.sub(condition.residual, product);
+        let rest = if graph.vanishes(rest) {
+            graph.zero()
+        } else {
+            rest
+        };
+        let solution = graph.product([(rest, Rational::one()), (slope, -Rational::one())]);
+        let solution = graph.neg(solution);
+        rules.push((condition.end, (field, order), solution));
+    }
+    rules
+}
+
+/// An expression at one end: the coordinate's value put in, base conditions used.
+pub(super) fn at_end(graph: &mut Graph, place: Id, end: End, rules: &BaseRules, id: Id) -> Id {
+    graph.substitute(id, &mut |_, node| match node {
+        Node::Coordinate => Some(place),
+        Node::Base(field, order) => rules
+            .iter()
+            .find(|(e, atom, _)| *e == end && *atom == (*field, *order))
+            .map(|(_, _, solution)| *solution),
+        _ => None,
+    })
+}
+
+impl Deriver<'_> {
+    /// The coordinate of an end.
+    pub(super) fn place(&mut self, end: End) -> Id {
+        match (&self.model.interval, end) {
+            (Some(interval), End::Lower) => interval.lower,
+            (Some(interval), End::Upper) => interval.upper,
+            (None, _) => self.graph.zero(),
+        }
+    }
+}
+
+pub(super) fn walls(
+    deriver: &mut Deriver,
+    problem: &CaseProblem,
+    conditions: &[WallCondition],
+    rules: &BaseRules,
+) -> Result<Walls, String> {
+    let form = boundary_form(deriver.graph, problem.linear).map_err(|term| {
+        let balance = &deriver.model.balances[term.row].name;
+        format!("the balance `{balance}` holds a time derivative under a cross-stream derivative: the adjoint boundary conditions would depend on the eigenvalue")
+    })?;
+    let mut reduced = Vec::new();
+    for end in End::BOTH {
+        let place = deriver.place(end);
+        let rows = conditions.iter().filter(|c| c.end == end).map(|condition| {
+            let mut row = Combination::new();
+            for (monomial, &coefficient) in &condition.form.degree(1).terms {
+                let (jet, symbol) = split(monomial[0], coefficient);
+                row.entry(jet).or_default().extend(symbol);
+            }
+            row
+        });
+        let rows: Vec<_> = rows.collect();
+        let mut simplify = |graph: &mut Graph, id| at_end(graph, place, end, rules, id);
+        let mut simplifier = Simplifier {
+            at_end: &mut simplify,
+        };
+        let solved = reduce(deriver.graph, rows, &mut simplifier).map_err(|_| {
+            "the boundary conditions cannot be solved for derivatives without x in them".to_owned()
+        })?;
+        reduced.push((end, solved));
+    }
+    Ok(Walls { form, reduced })
+}
