@@ -6,18 +6,18 @@
 //! (matrices) → [`spectrum`] (modes) → [`weakly`] (amplitude expansion, Landau coefficients) →
 //! [`study`] (critical points, sweeps, certificate) → [`cli`].
 //!
-//! ```no_run
-//! # fn main() -> landau_solver::error::Result<()> {
-//! # let model: Box<dyn landau_solver::Model> = unimplemented!();
+//! ```
+//! use landau_solver::model::C64;
 //! use landau_solver::study::Setup;
 //! use landau_solver::weakly::Selection;
+//! use landau_solver::{Model, error::Result};
 //!
-//! let setup = Setup::new(model.as_ref(), 50);
-//! let base = setup.base(None)?;
-//! let c2 = setup.with_point(&base, 0.16, Selection::Leading, |point| Ok(point.c2))?;
-//! # let _ = c2;
-//! # Ok(())
-//! # }
+//! /// c2 of the leading mode at one wavenumber, with M = 50.
+//! fn first_landau_coefficient(model: &dyn Model, k: f64) -> Result<C64> {
+//!     let setup = Setup::new(model, 50);
+//!     let base = setup.base(None)?;
+//!     setup.with_point(&base, k, Selection::Leading, |point| Ok(point.c2))
+//! }
 //! ```
 
 // X[k;m] is the mode of harmonic k and order m, not a link.

@@ -21,10 +21,10 @@ pub enum Command {
         json: bool,
     },
     /// Diagnose a spec without building it.
-    #[command(after_help = "Example: landau check spec/models/vibrated_bed.model")]
+    #[command(after_help = "Example: landau check my.model")]
     Check { file: PathBuf },
     /// Print the derived operators.
-    #[command(after_help = "Example: landau explain vibrated_bed --operator adjoint")]
+    #[command(after_help = "Example: landau explain my.model --operator adjoint")]
     Explain {
         /// A built model, or the path of a .model file.
         model: String,
@@ -35,9 +35,7 @@ pub enum Command {
         format: Format,
     },
     /// Solve for the base state and print its profiles.
-    #[command(
-        after_help = "Example: landau base vibrated_bed --set S=400 --set H=auto --points 21"
-    )]
+    #[command(after_help = "Example: landau base my.model --set S=400 --set H=auto --points 21")]
     Base {
         /// A built model, or the path of a .model file.
         model: String,
@@ -48,7 +46,7 @@ pub enum Command {
         common: Common,
     },
     /// Direct and adjoint eigenvalues at one wavenumber.
-    #[command(after_help = "Example: landau spectrum vibrated_bed --k 0.16 -M 100")]
+    #[command(after_help = "Example: landau spectrum my.model --k 0.16 -M 100")]
     Spectrum {
         /// A built model, or the path of a .model file.
         model: String,
@@ -60,7 +58,7 @@ pub enum Command {
     },
     /// Landau coefficients, kind of bifurcation, amplitude, error, resonances at one wavenumber.
     #[command(
-        after_help = "Example: landau point vibrated_bed --k 0.16\n         landau point my.model --k 1 --set r=0.1 --json"
+        after_help = "Example: landau point my.model --k 0.16\n         landau point my.model --k 1 --set r=0.1 --json"
     )]
     Point {
         /// A built model, or the path of a .model file.
@@ -76,7 +74,7 @@ pub enum Command {
     },
     /// Where growth or c2 changes sign, or c2 jumps through infinity.
     #[command(
-        after_help = "Examples:\n  landau critical vibrated_bed --vary k --from 0.1 --to 0.2\n  landau critical vibrated_bed --vary k --from 0.06 --to 0.1 --of c2\n  landau critical vibrated_bed --vary S --from 50 --to 100 --k 0.16\n  landau critical plane_poiseuille --vary R --from 5000 --to 6500 --minimize k=0.9:1.1"
+        after_help = "Examples:\n  landau critical my.model --vary k --from 0.1 --to 0.2\n  landau critical my.model --vary k --from 0.06 --to 0.1 --of c2\n  landau critical my.model --vary S --from 50 --to 100 --k 0.16\n  landau critical my.model --vary R --from 5000 --to 6500 --minimize k=0.9:1.1"
     )]
     Critical {
         /// A built model, or the path of a .model file.
@@ -88,7 +86,7 @@ pub enum Command {
     },
     /// Landau points over ranges of k and parameters, as CSV; resumes where it was interrupted.
     #[command(
-        after_help = "Examples:\n  landau sweep vibrated_bed --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep vibrated_bed --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv"
+        after_help = "Examples:\n  landau sweep my.model --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep my.model --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv"
     )]
     Sweep {
         /// A built model, or the path of a .model file.
@@ -99,7 +97,7 @@ pub enum Command {
         common: Common,
     },
     /// Print the certificate of a model; fails when it does not hold.
-    #[command(after_help = "Example: landau verify vibrated_bed --k 0.16")]
+    #[command(after_help = "Example: landau verify my.model --k 0.16")]
     Verify {
         /// A built model, or the path of a .model file.
         model: String,

@@ -30,12 +30,12 @@ fn one(setup: &Setup, base: &BaseState, pair: &EigenPair, index: usize) -> Resul
     let info = &setup.model.structure().parameters[index];
     let value = setup.parameters.values[index];
     let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
-    let quotient = |shift: f64| -> Result<C64> {
+    let shifted = |shift: f64| -> Result<C64> {
         let mut moved = setup.clone();
         // The formula may reach past a declared range.
         moved.parameters.values[index] = value + shift * step;
         let state = moved.base(Some(base))?;
-        rayleigh(&moved, &state, pair)
+        quotient_at(&moved, &state, pair)
     };
     // Inside the range if need be: one-sided where a bound is near.
     let room = |side: f64| {
@@ -44,8 +44,8 @@ fn one(setup: &Setup, base: &BaseState, pair: &EigenPair, index: usize) -> Resul
     };
     if room(-1.0) && room(1.0) {
         // (f(−2h) − 8 f(−h) + 8 f(h) − f(2h)) / 12h
-        let (a, b) = (quotient(-2.0)?, quotient(-1.0)?);
-        let (c, d) = (quotient(1.0)?, quotient(2.0)?);
+        let (a, b) = (shifted(-2.0)?, shifted(-1.0)?);
+        let (c, d) = (shifted(1.0)?, shifted(2.0)?);
         return Ok((a - 8.0 * b + 8.0 * c - d) / (12.0 * step));
     }
     let side = if room(1.0) { 1.0 } else { -1.0 };
@@ -53,13 +53,13 @@ fn one(setup: &Setup, base: &BaseState, pair: &EigenPair, index: usize) -> Resul
     let weights = [-25.0, 48.0, -36.0, 16.0, -3.0];
     let mut total = C64::new(0.0, 0.0);
     for (i, weight) in weights.iter().enumerate() {
-        total += *weight * quotient(side * 0.5 * i as f64)?;
+        total += *weight * shifted(side * 0.5 * i as f64)?;
     }
     Ok(total / (12.0 * 0.5 * step * side))
 }
 
 /// ⟨Y, L X⟩ / ⟨Y, M0 X⟩ with the vectors of another state: stationary at the mode itself.
-fn rayleigh(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Result<C64> {
+fn quotient_at(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Result<C64> {
     setup.with_problem(base, |problem| {
         let (operator, mass) = problem.pencil::<C64>(pair.k);
         let above = dot(&pair.left, &apply(operator.as_ref(), &pair.right));
