@@ -164,7 +164,7 @@ fn certificates_hold() {
         "verify swift_hohenberg --k 0.95",
         "verify robin_strip --k 1",
         "verify granular_couette --k 3 --near 0",
-        "verify vibrated_bed --k 0.1 --set top=neumann",
+        "verify vibrated_bed --k 0.1 -M 80 --set top=neumann",
     ] {
         let arguments: Vec<&str> = line.split_whitespace().collect();
         let answer = landau(&arguments);

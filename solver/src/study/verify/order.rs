@@ -46,28 +46,35 @@ pub fn defects(expansion: &Expansion) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// An amplitude at which the series still makes sense.
+/// An amplitude at which the series still makes sense, by the fields that have a time derivative: a
+/// pressure has a scale of its own.
 fn start(expansion: &Expansion) -> f64 {
-    let largest = expansion.modes[&(1, 1)]
-        .values
-        .iter()
-        .map(|v| v.norm())
-        .fold(1e-300, f64::max);
-    let second = [(0, 2), (2, 2)]
-        .iter()
-        .filter_map(|key| expansion.modes.get(key))
-        .flat_map(|mode| mode.values.iter())
-        .map(|v| v.norm())
-        .fold(1e-300, f64::max);
+    let structure = expansion.problem.structure();
+    let columns = &expansion.problem.direct.layout.columns;
+    let moving = (0..columns.len()).filter(|&field| {
+        structure
+            .linear
+            .iter()
+            .any(|t| t.jet.t > 0 && usize::from(t.jet.field) == field)
+    });
+    let moving: Vec<_> = moving.map(|field| &columns[field]).collect();
+    let size = |key: (usize, usize)| {
+        let values = &expansion.modes[&key].values;
+        let own = moving
+            .iter()
+            .flat_map(|block| &values[block.offset..block.offset + block.len]);
+        own.map(|v| v.norm()).fold(1e-300, f64::max)
+    };
+    let (first, second) = (size((1, 1)), size((0, 2)).max(size((2, 2))));
     // Where second order catches up with first, the series is of no use.
-    0.1 * (1.0 / largest).min(largest / second)
+    0.1 * (1.0 / first).min(first / second)
 }
 
 /// What rounding leaves of the defect: at A = 0, and for each unit of A (from an amplitude so small
 /// that A⁴ is nothing).
 pub fn floor(expansion: &Expansion) -> (f64, f64) {
     let rest = defect(expansion, 0.0);
-    let tiny = start(expansion) * 1e-9;
+    let tiny = start(expansion) * 1e-5;
     // What does not stand out of the rest is the rest.
     let slope = (defect(expansion, tiny) - 2.0 * rest).max(0.0) / tiny;
     (rest, slope)
