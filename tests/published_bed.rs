@@ -174,7 +174,7 @@ fn printed_bottom_condition_is_a_misprint() {
     close("upper end", value(0.12, 0.19), 0.1660, 1e-4);
 }
 
-/// Another closure by one changed line: Enskog disks.
+/// Another closure: Enskog disks, imported in place of the first, with viscosities of its own.
 #[test]
 fn second_closure() {
     let spec =
