@@ -1,15 +1,21 @@
 //! Dense linear algebra over real or complex numbers: the few calls that the solver needs of faer.
 
 use crate::model::C64;
-use faer::linalg::solvers::{PartialPivLu, SolveCore};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::perm::Perm;
 use faer::traits::ComplexField;
-use faer::{Conj, Mat, MatRef};
+use faer::{Conj, Mat, MatMut, MatRef, Spec, get_global_parallelism};
 
 /// Real or complex scalars.
 pub trait Scalar: ComplexField + Copy + Send + Sync + std::fmt::Debug {
     /// Drops the imaginary part where the type is real.
     fn from_complex(value: C64) -> Self;
     fn complex(self) -> C64;
+    /// |x|
+    fn size(self) -> f64;
+    fn times(self, factor: f64) -> Self;
+    fn conjugate(self) -> Self;
     /// All eigenvalues and right eigenvectors.
     fn eigen(matrix: MatRef<'_, Self>) -> Option<(Vec<C64>, Mat<C64>)>;
     /// All eigenvalues.
@@ -23,6 +29,18 @@ impl Scalar for f64 {
 
     fn complex(self) -> C64 {
         C64::new(self, 0.0)
+    }
+
+    fn size(self) -> f64 {
+        self.abs()
+    }
+
+    fn times(self, factor: f64) -> f64 {
+        self * factor
+    }
+
+    fn conjugate(self) -> f64 {
+        self
     }
 
     fn eigen(matrix: MatRef<'_, f64>) -> Option<(Vec<C64>, Mat<C64>)> {
@@ -45,6 +63,18 @@ impl Scalar for C64 {
         self
     }
 
+    fn size(self) -> f64 {
+        self.norm()
+    }
+
+    fn times(self, factor: f64) -> C64 {
+        self * factor
+    }
+
+    fn conjugate(self) -> C64 {
+        self.conj()
+    }
+
     fn eigen(matrix: MatRef<'_, C64>) -> Option<(Vec<C64>, Mat<C64>)> {
         let eigen = matrix.eigen().ok()?;
         let values = (0..matrix.nrows()).map(|i| eigen.S()[i]).collect();
@@ -56,9 +86,17 @@ impl Scalar for C64 {
     }
 }
 
+/// Runs a loop with the widest vectors that the processor has; the result is the same without.
+#[inline(always)]
+pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
+    faer::traits::pulp::Arch::new().dispatch(work)
+}
+
 /// A square system, rows brought to comparable size, factorised once for many right-hand sides.
 pub struct Factorised<T: Scalar> {
-    lu: PartialPivLu<T>,
+    /// L below the diagonal, U above and on it: the matrix itself, overwritten.
+    factors: Mat<T>,
+    rows: Perm<usize>,
     /// 1 / (largest entry of each row)
     scale: Vec<f64>,
 }
@@ -66,78 +104,136 @@ pub struct Factorised<T: Scalar> {
 impl<T: Scalar> Factorised<T> {
     pub fn new(mut matrix: Mat<T>) -> Self {
         let n = matrix.nrows();
-        let mut largest = vec![0.0_f64; n];
-        for j in 0..n {
-            for (i, size) in largest.iter_mut().enumerate() {
-                *size = size.max(matrix[(i, j)].complex().norm());
-            }
-        }
-        let scale: Vec<f64> = largest
-            .iter()
-            .map(|&m| if m > 0.0 { 1.0 / m } else { 1.0 })
-            .collect();
-        for j in 0..n {
-            for (i, &factor) in scale.iter().enumerate() {
-                let entry = &mut matrix[(i, j)];
-                *entry = T::from_complex(entry.complex() * factor);
-            }
-        }
+        let scale = vectorised(
+            #[inline(always)]
+            || row_scale(&matrix),
+        );
+        vectorised(
+            #[inline(always)]
+            || {
+                for j in 0..n {
+                    for (factor, entry) in scale.iter().zip(matrix.col_as_slice_mut(j)) {
+                        *entry = entry.times(*factor);
+                    }
+                }
+            },
+        );
+        let (mut forward, mut backward) = (vec![0; n], vec![0; n]);
+        let (parallel, spec) = (get_global_parallelism(), Spec::default());
+        let scratch = factor::lu_in_place_scratch::<usize, T>(n, n, parallel, spec);
+        factor::lu_in_place(
+            matrix.as_mut(),
+            &mut forward,
+            &mut backward,
+            parallel,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+            spec,
+        );
         Factorised {
-            lu: matrix.partial_piv_lu(),
+            factors: matrix,
+            rows: Perm::new_checked(forward.into(), backward.into(), n),
             scale,
         }
     }
 
     /// A⁻¹ b
     pub fn solve(&self, right: &[T]) -> Vec<T> {
-        let mut x = Mat::from_fn(right.len(), 1, |i, _| {
-            T::from_complex(right[i].complex() * self.scale[i])
-        });
-        self.lu.solve_in_place_with_conj(Conj::No, x.as_mut());
-        (0..right.len()).map(|i| x[(i, 0)]).collect()
+        let mut x: Vec<T> = right
+            .iter()
+            .zip(&self.scale)
+            .map(|(b, s)| b.times(*s))
+            .collect();
+        let (n, factors) = (x.len(), self.factors.as_ref());
+        let parallel = get_global_parallelism();
+        let scratch = solve::solve_in_place_scratch::<usize, T>(n, 1, parallel);
+        solve::solve_in_place_with_conj(
+            factors,
+            factors,
+            self.rows.as_ref(),
+            Conj::No,
+            MatMut::from_column_major_slice_mut(&mut x, n, 1),
+            parallel,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+        x
     }
 
     /// A⁻ᴴ b
     pub fn solve_adjoint(&self, right: &[T]) -> Vec<T> {
-        let mut x = Mat::from_fn(right.len(), 1, |i, _| right[i]);
-        self.lu
-            .solve_transpose_in_place_with_conj(Conj::Yes, x.as_mut());
-        (0..right.len())
-            .map(|i| T::from_complex(x[(i, 0)].complex() * self.scale[i]))
+        let mut x = right.to_vec();
+        let (n, factors) = (x.len(), self.factors.as_ref());
+        let parallel = get_global_parallelism();
+        let scratch = solve::solve_transpose_in_place_scratch::<usize, T>(n, 1, parallel);
+        solve::solve_transpose_in_place_with_conj(
+            factors,
+            factors,
+            self.rows.as_ref(),
+            Conj::Yes,
+            MatMut::from_column_major_slice_mut(&mut x, n, 1),
+            parallel,
+            MemStack::new(&mut MemBuffer::new(scratch)),
+        );
+        x.iter()
+            .zip(&self.scale)
+            .map(|(x, s)| x.times(*s))
             .collect()
     }
+}
+
+/// 1 / (largest entry) of each row; 1 for a row of zeros.
+#[inline(always)]
+fn row_scale<T: Scalar>(matrix: &Mat<T>) -> Vec<f64> {
+    let mut largest = vec![0.0_f64; matrix.nrows()];
+    for j in 0..matrix.ncols() {
+        for (most, entry) in largest.iter_mut().zip(matrix.col_as_slice(j)) {
+            let size = entry.size();
+            *most = if size > *most { size } else { *most };
+        }
+    }
+    let invert = |m: f64| if m == 0.0 { 1.0 } else { 1.0 / m };
+    largest.into_iter().map(invert).collect()
+}
+
+/// [A c; rᴴ 0] for borders (c, r), each of the length of A.
+pub fn bordered<T: Scalar>(matrix: &Mat<T>, borders: &[(Vec<T>, Vec<T>)]) -> Mat<T> {
+    let n = matrix.nrows();
+    let size = n + borders.len();
+    let mut result = Mat::zeros(size, size);
+    for j in 0..n {
+        let column = result.col_as_slice_mut(j);
+        column[..n].copy_from_slice(matrix.col_as_slice(j));
+        for (entry, (_, row)) in column[n..].iter_mut().zip(borders) {
+            *entry = row[j].conjugate();
+        }
+    }
+    for (b, (column, _)) in borders.iter().enumerate() {
+        result.col_as_slice_mut(n + b)[..n].copy_from_slice(column);
+    }
+    result
 }
 
 /// A x
 pub fn apply<T: Scalar>(matrix: MatRef<'_, T>, x: &[T]) -> Vec<T> {
     let x = Mat::from_fn(x.len(), 1, |i, _| x[i]);
     let product = matrix * &x;
-    (0..matrix.nrows()).map(|i| product[(i, 0)]).collect()
-}
-
-/// Aᴴ x
-pub fn apply_adjoint<T: Scalar>(matrix: MatRef<'_, T>, x: &[T]) -> Vec<T> {
-    let x = Mat::from_fn(x.len(), 1, |i, _| x[i]);
-    let product = matrix.adjoint() * &x;
-    (0..matrix.ncols()).map(|i| product[(i, 0)]).collect()
+    product.col_as_slice(0).to_vec()
 }
 
 /// Σ conj(x) y
 pub fn dot<T: Scalar>(x: &[T], y: &[T]) -> C64 {
-    x.iter()
+    let sum = x
+        .iter()
         .zip(y)
-        .map(|(a, b)| a.complex().conj() * b.complex())
-        .sum()
+        .fold(T::zero_impl(), |sum, (a, b)| sum + a.conjugate() * *b);
+    sum.complex()
 }
 
 /// √Σ|x|²
 pub fn norm<T: Scalar>(x: &[T]) -> f64 {
-    x.iter().map(|a| a.complex().norm_sqr()).sum::<f64>().sqrt()
+    dot(x, x).re.sqrt()
 }
 
-/// Scales a vector by a number of its own kind.
-pub fn scaled<T: Scalar>(x: &[T], factor: C64) -> Vec<T> {
-    x.iter()
-        .map(|a| T::from_complex(a.complex() * factor))
-        .collect()
+/// Scales a vector by a real number.
+pub fn scaled<T: Scalar>(x: &[T], factor: f64) -> Vec<T> {
+    x.iter().map(|a| a.times(factor)).collect()
 }

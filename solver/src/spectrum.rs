@@ -3,7 +3,7 @@
 //! Boundary conditions, continuity and closures make M0 singular; the infinite eigenvalues are
 //! deflated exactly before anything is computed, so none can show up as a spurious finite one.
 
-use crate::dense::{Factorised, Scalar, apply, apply_adjoint, dot, norm, scaled};
+use crate::dense::{Factorised, Scalar, dot, norm, scaled};
 use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::problem::Problem;
@@ -92,15 +92,15 @@ fn deflate<T: Scalar>(mut operator: Mat<T>, mut mass: Mat<T>) -> Result<Reduced<
     for round in 0..=MOST_DEFLATIONS {
         let size = operator.nrows();
         let algebraic: Vec<usize> = (0..size)
-            .filter(|&i| (0..size).all(|j| mass[(i, j)].complex().norm() == 0.0))
+            .filter(|&i| (0..size).all(|j| mass[(i, j)].size() == 0.0))
             .collect();
         if algebraic.is_empty() {
             // Rotate rows so that hidden algebraic equations show as zero rows.
             let qr = mass.col_piv_qr();
             let r = qr.thin_R();
-            let largest = r[(0, 0)].complex().norm();
+            let largest = r[(0, 0)].size();
             let rank = (0..size)
-                .filter(|&i| r[(i, i)].complex().norm() > RANK * largest)
+                .filter(|&i| r[(i, i)].size() > RANK * largest)
                 .count();
             if rank == size {
                 let basis = basis.unwrap_or_else(|| Mat::identity(n, n));
@@ -134,15 +134,15 @@ fn deflate<T: Scalar>(mut operator: Mat<T>, mut mass: Mat<T>) -> Result<Reduced<
         let constraints = Mat::from_fn(size, algebraic.len(), |j, a| {
             let row = algebraic[a];
             let largest = (0..size)
-                .map(|c| operator[(row, c)].complex().norm())
+                .map(|c| operator[(row, c)].size())
                 .fold(1e-300, f64::max);
             T::from_complex(operator[(row, j)].complex().conj() / largest)
         });
         let qr = constraints.col_piv_qr();
         let r = qr.thin_R();
         let count = algebraic.len();
-        let largest = r[(0, 0)].complex().norm();
-        if (0..count).any(|i| r[(i, i)].complex().norm() <= RANK * largest) {
+        let largest = r[(0, 0)].size();
+        if (0..count).any(|i| r[(i, i)].size() <= RANK * largest) {
             return Err(Error::computation(
                 "the linear problem is singular for every growth rate: a field is determined up to \
                  something arbitrary; name it as `gauge` in the block `mean`, or check the balances",
@@ -179,7 +179,7 @@ impl<T: Scalar> Reduced<T> {
         let scale: Vec<f64> = (0..n)
             .map(|i| {
                 1.0 / (0..n)
-                    .map(|j| shifted[(i, j)].complex().norm())
+                    .map(|j| shifted[(i, j)].size())
                     .fold(1e-300, f64::max)
             })
             .collect();
@@ -255,7 +255,13 @@ pub fn nearest(problem: &Problem, k: f64, target: C64) -> Result<EigenPair> {
 /// Where no mode has a similar shape.
 pub fn follow(problem: &Problem, k: f64, near: &EigenPair) -> Result<EigenPair> {
     if near.right.len() == problem.direct.layout.size
-        && let Some(pair) = refine(problem, k, near.c, &near.right, &near.left)
+        && let Some(pair) = refine(
+            problem,
+            k,
+            predict(problem, k, near),
+            &near.right,
+            &near.left,
+        )
         && likeness(&near.right, &pair.right) > SAME_SHAPE
     {
         return Ok(pair);
@@ -272,6 +278,28 @@ pub fn follow(problem: &Problem, k: f64, near: &EigenPair) -> Result<EigenPair> 
         )));
     }
     confirm(problem, k, c, right)
+}
+
+/// yᴴ L x / yᴴ M0 x with the vectors found nearby: off by the square of the distance.
+fn predict(problem: &Problem, k: f64, near: &EigenPair) -> C64 {
+    let c = if problem.is_real() && near.c.im == 0.0 {
+        quotient::<f64>(problem, k, near)
+    } else {
+        quotient::<C64>(problem, k, near)
+    };
+    beside(if c.norm().is_finite() { c } else { near.c })
+}
+
+fn quotient<T: Scalar>(problem: &Problem, k: f64, near: &EigenPair) -> C64 {
+    let kind = |x: &[C64]| -> Vec<T> { x.iter().map(|&v| T::from_complex(v)).collect() };
+    let (right, left) = (kind(&near.right), kind(&near.left));
+    let above = dot(&left, &problem.operator::<T>(k).apply(&right));
+    above / dot(&left, &problem.mass::<T>(k).apply(&right))
+}
+
+/// A shift next to an eigenvalue: off it by a little, so that the matrix can be factorised.
+fn beside(c: C64) -> C64 {
+    c + C64::new(1e-7 * c.norm().max(1e-3), 0.0)
 }
 
 fn no_modes() -> Error {
@@ -291,9 +319,7 @@ fn confirm(problem: &Problem, k: f64, c: C64, right: Vec<C64>) -> Result<EigenPa
     let start: Vec<C64> = (0..right.len())
         .map(|i| C64::new(1.0 + 0.37 * ((i * i) as f64).sin(), 0.0))
         .collect();
-    let scale = c.norm().max(1e-3);
-    // Off the eigenvalue by a little, so that the shifted matrix can be factorised.
-    refine(problem, k, c + C64::new(1e-7 * scale, 0.0), &right, &start).ok_or_else(|| {
+    refine(problem, k, beside(c), &right, &start).ok_or_else(|| {
         Error::computation(format!(
             "the eigenvalue {c:.6e} at k = {k} was not confirmed by inverse iteration; try another M"
         ))
@@ -330,8 +356,8 @@ fn iterate<T: Scalar>(
         x.iter().map(|v| T::from_complex(v * phase)).collect()
     };
     let (mut x, mut y) = (kind(right), kind(left));
-    let mut mass_x = apply(mass.as_ref(), &x);
-    let mut mass_y = apply_adjoint(mass.as_ref(), &y);
+    let mut mass_x = mass.apply(&x);
+    let mut mass_y = mass.apply_adjoint(&y);
     let (mut c, mut change) = (shift, f64::INFINITY);
     for iteration in 0..MOST_ITERATIONS {
         let new_x = factorised.solve(&mass_x);
@@ -340,17 +366,17 @@ fn iterate<T: Scalar>(
         if !(size_x.is_finite() && size_y.is_finite()) || size_x == 0.0 || size_y == 0.0 {
             return None;
         }
-        let new_mass_x = apply(mass.as_ref(), &new_x);
+        let new_mass_x = mass.apply(&new_x);
         // (σ M0 − L) x_new = M0 x_old
         let denominator = dot(&new_y, &new_mass_x);
         if denominator.norm() == 0.0 {
             return None;
         }
         let next = shift - dot(&new_y, &mass_x) / denominator;
-        x = scaled(&new_x, C64::new(1.0 / size_x, 0.0));
-        y = scaled(&new_y, C64::new(1.0 / size_y, 0.0));
-        mass_x = scaled(&new_mass_x, C64::new(1.0 / size_x, 0.0));
-        mass_y = apply_adjoint(mass.as_ref(), &y);
+        x = scaled(&new_x, 1.0 / size_x);
+        y = scaled(&new_y, 1.0 / size_y);
+        mass_x = scaled(&new_mass_x, 1.0 / size_x);
+        mass_y = mass.apply_adjoint(&y);
         let step = (next - c).norm();
         c = next;
         // The eigenvalue converges twice as fast as the vectors: one more turn after it settles.

@@ -81,73 +81,83 @@ fn continuation(
     target: &Parameters,
     near: Option<&BaseState>,
 ) -> Result<BaseState> {
+    let start = match near {
+        Some(state) => state.clone(),
+        None => at_defaults(model, target)?,
+    };
+    let step = |parameters: &Parameters, from: &BaseState| {
+        Newton { model, parameters }
+            .refine(Some(from), &DEGREES)
+            .map_err(|failure| {
+                let place = "on the way from the default parameters";
+                describe(model, parameters, &failure, place)
+            })
+    };
+    walk(target, start, step)
+}
+
+/// The state at the defaults, the switches set as in `target`: there is nothing between two choices.
+fn at_defaults(model: &dyn Model, target: &Parameters) -> Result<BaseState> {
     let structure = model.structure();
-    let mut start = Parameters::defaults(structure);
-    // Switches are set at once: there is nothing between two choices.
+    let mut parameters = Parameters::defaults(structure);
     for (index, info) in structure.parameters.iter().enumerate() {
         if !info.choices.is_empty() {
-            start.values[index] = target.values[index];
+            parameters.values[index] = target.values[index];
         }
     }
-    let mut state = match near {
-        Some(state) => {
-            start = state.parameters.clone();
-            state.clone()
-        }
-        None => Newton {
-            model,
-            parameters: &start,
-        }
-        .refine(None, &DEGREES)
-        .map_err(|failure| describe(model, &start, &failure, "at the default parameters"))?,
-    };
-    let at = |fraction: f64| {
-        let mut parameters = target.clone();
-        for (value, (from, to)) in parameters
-            .values
-            .iter_mut()
-            .zip(start.values.iter().zip(&target.values))
-        {
-            // Positive parameters move by ratio, so that a decade is one stretch.
-            *value = if fraction == 1.0 {
-                *to
-            } else if *from > 0.0 && *to > 0.0 {
-                from * (to / from).powf(fraction)
-            } else {
-                from + fraction * (to - from)
-            };
-        }
-        parameters
-    };
+    Newton {
+        model,
+        parameters: &parameters,
+    }
+    .refine(None, &DEGREES)
+    .map_err(|failure| describe(model, &parameters, &failure, "at the default parameters"))
+}
+
+/// Follows a state from its parameters to `target`.
+fn walk(
+    target: &Parameters,
+    start: BaseState,
+    solve: impl Fn(&Parameters, &BaseState) -> Result<BaseState>,
+) -> Result<BaseState> {
+    let from = start.parameters.clone();
+    let mut state = start;
     let (mut done, mut step) = (0.0, 0.25_f64);
     while done < 1.0 {
         let fraction = (done + step).min(1.0);
-        let parameters = at(fraction);
-        match (Newton {
-            model,
-            parameters: &parameters,
-        })
-        .refine(Some(&state), &DEGREES)
-        {
+        match solve(&between(&from, target, fraction), &state) {
             Ok(next) => {
                 state = next;
                 done = fraction;
                 step *= 1.7;
             }
-            Err(failure) => {
+            Err(error) => {
                 step *= 0.4;
                 if step < SMALLEST_STEP {
-                    return Err(describe(
-                        model,
-                        &parameters,
-                        &failure,
-                        "on the way from the default parameters",
-                    ));
+                    return Err(error);
                 }
             }
         }
     }
     Ok(state)
+}
+
+/// Parameters at a fraction of the way; positive ones move by ratio, so that a decade is one stretch.
+fn between(from: &Parameters, to: &Parameters, fraction: f64) -> Parameters {
+    let mut parameters = to.clone();
+    for (value, (from, to)) in parameters
+        .values
+        .iter_mut()
+        .zip(from.values.iter().zip(&to.values))
+    {
+        *value = if fraction == 1.0 {
+            *to
+        } else if *from > 0.0 && *to > 0.0 {
+            from * (to / from).powf(fraction)
+        } else {
+            from + fraction * (to - from)
+        };
+    }
+    parameters
 }
 
 fn describe(model: &dyn Model, parameters: &Parameters, failure: &Failure, place: &str) -> Error {
@@ -168,8 +178,25 @@ fn describe(model: &dyn Model, parameters: &Parameters, failure: &Failure, place
     ))
 }
 
-/// Newton's method on the automatic parameters, their derivative by differences.
+/// The state whose automatic parameters meet their conditions.
 fn determine(
+    model: &dyn Model,
+    parameters: &Parameters,
+    near: Option<&BaseState>,
+) -> Result<BaseState> {
+    let direct = adjust(model, parameters, near);
+    if direct.is_ok() || near.is_some() {
+        return direct;
+    }
+    // The automatic parameters adjusted at every step: their defaults may suit no other values.
+    let mut start = at_defaults(model, parameters)?.parameters;
+    start.automatic.clone_from(&parameters.automatic);
+    let first = adjust(model, &start, None)?;
+    walk(parameters, first, |at, from| adjust(model, at, Some(from)))
+}
+
+/// Newton's method on the automatic parameters, their derivative by differences.
+fn adjust(
     model: &dyn Model,
     parameters: &Parameters,
     near: Option<&BaseState>,

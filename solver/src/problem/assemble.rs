@@ -1,8 +1,9 @@
 //! Matrices from terms: block (row, column) = Σ diag(coefficient) · (i k)^a |k|^b · D^d.
 
+use super::block::{Block, Blocks};
 use super::{LinearProblem, Problem, WallRow, quarter_turn};
 use crate::collocation::{Discretisation, GridKind, Layout};
-use crate::dense::Scalar;
+use crate::dense::{Scalar, bordered};
 use crate::model::{C64, End, Jet};
 use faer::Mat;
 use std::collections::BTreeMap;
@@ -14,6 +15,20 @@ pub struct Combination {
     pub operator: C64,
     pub walls: f64,
 }
+
+/// M0 alone.
+const MASS: Combination = Combination {
+    mass: C64::new(1.0, 0.0),
+    operator: C64::new(0.0, 0.0),
+    walls: 0.0,
+};
+
+/// L with the boundary conditions.
+const OPERATOR: Combination = Combination {
+    mass: C64::new(0.0, 0.0),
+    operator: C64::new(1.0, 0.0),
+    walls: 1.0,
+};
 
 impl LinearProblem {
     pub(super) fn new(
@@ -74,16 +89,8 @@ impl LinearProblem {
         k: f64,
         combination: Combination,
     ) -> Mat<T> {
-        let n = self.layout.size;
-        let mut matrix = Mat::<T>::zeros(n, n);
-        self.add(
-            &mut matrix,
-            discretisation,
-            scale,
-            combination,
-            |jet, row| self.symbol(jet, k, row),
-        );
-        matrix
+        let symbol = |jet, turn| self.symbol(jet, k, turn);
+        self.assemble(discretisation, scale, combination, symbol)
     }
 
     /// d/dk of [`LinearProblem::matrix`] at k > 0.
@@ -94,31 +101,35 @@ impl LinearProblem {
         k: f64,
         combination: Combination,
     ) -> Mat<T> {
-        let n = self.layout.size;
-        let mut matrix = Mat::<T>::zeros(n, n);
-        self.add(
-            &mut matrix,
-            discretisation,
-            scale,
-            combination,
-            |jet, row| {
-                let power = f64::from(jet.x) + f64::from(jet.absx);
-                self.symbol(jet, k, row) * (power / k)
-            },
-        );
-        matrix
+        let symbol = |jet: Jet, turn| {
+            let power = f64::from(jet.x) + f64::from(jet.absx);
+            self.symbol(jet, k, turn) * (power / k)
+        };
+        self.assemble(discretisation, scale, combination, symbol)
     }
 
-    fn add<T: Scalar>(
+    fn assemble<T: Scalar>(
         &self,
-        matrix: &mut Mat<T>,
         discretisation: &Discretisation,
         scale: f64,
         combination: Combination,
         symbol: impl Fn(Jet, usize) -> C64,
-    ) {
+    ) -> Mat<T> {
+        self.blocks(discretisation, scale, combination, &symbol)
+            .dense()
+    }
+
+    /// The balances of `combination`, block by block, then its walls.
+    fn blocks<T: Scalar>(
+        &self,
+        discretisation: &Discretisation,
+        scale: f64,
+        combination: Combination,
+        symbol: &impl Fn(Jet, usize) -> C64,
+    ) -> Blocks<T> {
         // Terms that share a block and a y-order share one differentiation matrix.
-        let mut sums: BTreeMap<(usize, usize, usize), Vec<C64>> = BTreeMap::new();
+        let mut sums: BTreeMap<(usize, usize, usize), Vec<T>> = BTreeMap::new();
+        let zero = C64::new(0.0, 0.0);
         for (row, jet, coefficient) in &self.terms {
             let column = usize::from(jet.field);
             if column >= self.layout.columns.len() {
@@ -129,49 +140,55 @@ impl LinearProblem {
             } else {
                 combination.operator
             };
-            if weight == C64::new(0.0, 0.0) {
+            if weight == zero {
                 continue;
             }
             let factor = weight * symbol(*jet, self.row_turns[*row]) * scale.powi(i32::from(jet.y));
-            if factor == C64::new(0.0, 0.0) {
+            if factor == zero {
                 continue;
             }
-            let key = (*row, column, usize::from(jet.y));
+            let factor = T::from_complex(factor);
             let sum = sums
-                .entry(key)
-                .or_insert_with(|| vec![C64::new(0.0, 0.0); coefficient.len()]);
+                .entry((*row, column, usize::from(jet.y)))
+                .or_insert_with(|| vec![T::from_complex(zero); coefficient.len()]);
             for (s, c) in sum.iter_mut().zip(coefficient) {
-                *s += factor * *c;
+                *s += factor.times(*c);
             }
         }
-        for ((row, column, order), sum) in sums {
+        let balance = |((row, column, order), coefficients): ((usize, usize, usize), Vec<T>)| {
             let (rows, columns) = (&self.layout.rows[row], &self.layout.columns[column]);
-            let derivative = discretisation.matrix(columns.grid, rows.grid, order);
-            let sum: Vec<T> = sum.into_iter().map(T::from_complex).collect();
-            for j in 0..columns.len {
-                let source = derivative.col(j);
-                let target = matrix.as_mut().col_mut(columns.offset + j);
-                let mut target = target.subrows_mut(rows.offset, rows.len);
-                for (i, &factor) in sum.iter().enumerate() {
-                    target[i] += scaled(factor, source[i]);
-                }
+            Block {
+                row: rows.offset,
+                column: columns.offset,
+                derivative: discretisation.matrix(columns.grid, rows.grid, order),
+                coefficients,
             }
-        }
+        };
+        let mut blocks: Vec<Block<T>> = sums.into_iter().map(balance).collect();
         if combination.walls != 0.0 {
-            self.add_walls(matrix, discretisation, scale, combination.walls, symbol);
+            self.add_walls(
+                &mut blocks,
+                discretisation,
+                scale,
+                combination.walls,
+                symbol,
+            );
+        }
+        Blocks {
+            size: self.layout.size,
+            blocks,
         }
     }
 
     fn add_walls<T: Scalar>(
         &self,
-        matrix: &mut Mat<T>,
+        blocks: &mut Vec<Block<T>>,
         discretisation: &Discretisation,
         scale: f64,
         weight: f64,
-        symbol: impl Fn(Jet, usize) -> C64,
+        symbol: &impl Fn(Jet, usize) -> C64,
     ) {
         for (index, wall) in self.walls.iter().enumerate() {
-            let row = self.layout.walls + index;
             let turn = self.wall_turn(wall);
             let to = if wall.end == End::Lower {
                 GridKind::Lower
@@ -182,20 +199,17 @@ impl LinearProblem {
                 let Some(columns) = self.layout.columns.get(usize::from(jet.field)) else {
                     continue;
                 };
-                let derivative = discretisation.matrix(columns.grid, to, usize::from(jet.y));
                 let factor =
                     symbol(*jet, turn) * (weight * coefficient * scale.powi(i32::from(jet.y)));
-                for j in 0..columns.len {
-                    let entry = &mut matrix[(row, columns.offset + j)];
-                    *entry += T::from_complex(factor * derivative[(0, j)]);
-                }
+                blocks.push(Block {
+                    row: self.layout.walls + index,
+                    column: columns.offset,
+                    derivative: discretisation.matrix(columns.grid, to, usize::from(jet.y)),
+                    coefficients: vec![T::from_complex(factor)],
+                });
             }
         }
     }
-}
-
-fn scaled<T: Scalar>(factor: T, by: f64) -> T {
-    T::from_complex(factor.complex() * by)
 }
 
 impl Problem<'_> {
@@ -204,34 +218,25 @@ impl Problem<'_> {
         self.pencil_of(&self.direct, k)
     }
 
-    /// M0 at wavenumber k.
-    pub fn mass<T: Scalar>(&self, k: f64) -> Mat<T> {
-        let (zero, one) = (C64::new(0.0, 0.0), C64::new(1.0, 0.0));
-        let mass = Combination {
-            mass: one,
-            operator: zero,
-            walls: 0.0,
-        };
+    /// M0 at wavenumber k, to be applied rather than factorised.
+    pub fn mass<T: Scalar>(&self, k: f64) -> Blocks<T> {
+        let symbol = |jet, turn| self.direct.symbol(jet, k, turn);
         self.direct
-            .matrix(self.discretisation, self.scale(), k, mass)
+            .blocks(self.discretisation, self.scale(), MASS, &symbol)
+    }
+
+    /// L at wavenumber k with the boundary conditions as rows, to be applied.
+    pub fn operator<T: Scalar>(&self, k: f64) -> Blocks<T> {
+        let symbol = |jet, turn| self.direct.symbol(jet, k, turn);
+        self.direct
+            .blocks(self.discretisation, self.scale(), OPERATOR, &symbol)
     }
 
     /// The same for the adjoint problem.
     pub fn pencil_of<T: Scalar>(&self, problem: &LinearProblem, k: f64) -> (Mat<T>, Mat<T>) {
-        let (zero, one) = (C64::new(0.0, 0.0), C64::new(1.0, 0.0));
-        let operator = Combination {
-            mass: zero,
-            operator: one,
-            walls: 1.0,
-        };
-        let mass = Combination {
-            mass: one,
-            operator: zero,
-            walls: 0.0,
-        };
         (
-            problem.matrix(self.discretisation, self.scale(), k, operator),
-            problem.matrix(self.discretisation, self.scale(), k, mass),
+            problem.matrix(self.discretisation, self.scale(), k, OPERATOR),
+            problem.matrix(self.discretisation, self.scale(), k, MASS),
         )
     }
 
@@ -268,14 +273,12 @@ impl Problem<'_> {
     }
 
     fn bordered<T: Scalar>(&self, matrix: Mat<T>) -> Mat<T> {
-        let n = matrix.nrows();
-        let size = n + self.borders.len();
         let real = |value: f64| T::from_complex(C64::new(value, 0.0));
-        Mat::from_fn(size, size, |i, j| match (i < n, j < n) {
-            (true, true) => matrix[(i, j)],
-            (true, false) => real(self.borders[j - n].column[i]),
-            (false, true) => real(self.borders[i - n].row[j]),
-            (false, false) => real(0.0),
-        })
+        let borders = self.borders.iter().map(|border| {
+            let column = border.column.iter().map(|&v| real(v)).collect();
+            let row = border.row.iter().map(|&v| real(v)).collect();
+            (column, row)
+        });
+        bordered(&matrix, &borders.collect::<Vec<_>>())
     }
 }

@@ -5,10 +5,13 @@
 //! the basis in which every matrix is real (odd fields divided by i).
 
 mod assemble;
+mod block;
 mod closure;
 mod conditions;
+mod mirror;
 
 pub use assemble::Combination;
+pub use block::Blocks;
 pub use closure::Border;
 pub use conditions::WallRow;
 

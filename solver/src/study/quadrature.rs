@@ -110,24 +110,20 @@ pub fn second_landau(point: &LandauPoint, adjoint: &AdjointMode) -> Result<Optio
         })
         .collect();
     let (mut above, mut below) = (C64::new(0.0, 0.0), C64::new(0.0, 0.0));
-    let empty: &[C64] = &[];
     for (i, &xi) in nodes.iter().enumerate() {
         let base = problem.base.point(problem.model, xi, k);
         let c = evaluate(problem.model, KernelId::Nonlinear, &base);
         let linear = evaluate(problem.model, KernelId::Linear, &base);
-        let row_of = |table: &Vec<Vec<C64>>| -> Vec<C64> {
-            table.get(i).cloned().unwrap_or_else(|| empty.to_vec())
-        };
-        let (x, xc, m, s) = (row_of(&j1), row_of(&j1c), row_of(&j0), row_of(&j2));
+        let (x, xc, m, s) = (j1.at(i), j1c.at(i), j0.at(i), j2.at(i));
         for (row, profile) in profiles.iter().enumerate() {
             // G[1;3] = 2 N2(X11, X02) + 2 N2(X̄11, X22) + 3 N3(X11, X11, X̄11)
             let mut forcing = C64::new(0.0, 0.0);
             if structure.forms[0][row] {
-                forcing += 2.0 * problem.model.form(2, row, &c, &[&x, &m]);
-                forcing += 2.0 * problem.model.form(2, row, &c, &[&xc, &s]);
+                forcing += 2.0 * problem.model.form(2, row, &c, &[x, m]);
+                forcing += 2.0 * problem.model.form(2, row, &c, &[xc, s]);
             }
             if structure.forms[1][row] {
-                forcing += 3.0 * problem.model.form(3, row, &c, &[&x, &x, &xc]);
+                forcing += 3.0 * problem.model.form(3, row, &c, &[x, x, xc]);
             }
             above += weights[i] * profile[i].conj() * forcing;
         }

@@ -61,9 +61,8 @@ fn one(setup: &Setup, base: &BaseState, pair: &EigenPair, index: usize) -> Resul
 /// ⟨Y, L X⟩ / ⟨Y, M0 X⟩ with the vectors of another state: stationary at the mode itself.
 fn quotient_at(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Result<C64> {
     setup.with_problem(base, |problem| {
-        let (operator, mass) = problem.pencil::<C64>(pair.k);
-        let above = dot(&pair.left, &apply(operator.as_ref(), &pair.right));
-        Ok(above / dot(&pair.left, &apply(mass.as_ref(), &pair.right)))
+        let above = dot(&pair.left, &problem.operator(pair.k).apply(&pair.right));
+        Ok(above / dot(&pair.left, &problem.mass(pair.k).apply(&pair.right)))
     })
 }
 
@@ -82,5 +81,5 @@ pub fn wavenumber(problem: &Problem, pair: &EigenPair) -> C64 {
     );
     let mass = problem.mass::<C64>(pair.k);
     let above = dot(&pair.left, &apply(derivative.as_ref(), &pair.right));
-    above / dot(&pair.left, &apply(mass.as_ref(), &pair.right))
+    above / dot(&pair.left, &mass.apply(&pair.right))
 }

@@ -4,14 +4,14 @@
 //! dθ/dt = b0 + b2 A² + …, P (3.13)–(3.16). For every (k, m)
 //! [(m a0 + i k b0) M0 − L_k] X[k;m] = G[k;m] − c_{m−1} δ_{k1} M0 X[1;1], P (3.18).
 
-use super::mode::Mode;
+use super::mode::{JetTable, Jets, Mode};
 use crate::collocation::GridKind;
 use crate::dense::{Factorised, Scalar};
 use crate::error::{Error, Result};
 use crate::model::{C64, ClosureKind, End, Jet};
 use crate::problem::Problem;
 use crate::spectrum::EigenPair;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Harmonic k ≥ 0 and order m.
 pub type Key = (usize, usize);
@@ -27,7 +27,7 @@ pub struct Expansion<'p, 'm> {
     /// Multipliers of the closures at k = 0: name of the kind, order, value relative to the forcing.
     pub multipliers: Vec<(ClosureKind, usize, f64)>,
     /// Jets of a mode on the grids of the rows, made when first needed.
-    jets: BTreeMap<(usize, usize, bool, usize), Vec<Vec<C64>>>,
+    jets: HashMap<(Key, GridKind), Jets>,
 }
 
 impl<'p, 'm> Expansion<'p, 'm> {
@@ -58,7 +58,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
             modes,
             landau,
             multipliers: Vec::new(),
-            jets: BTreeMap::new(),
+            jets: HashMap::new(),
         })
     }
 
@@ -89,13 +89,12 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let k = harmonic as f64 * self.k;
         let shift = self.shift(key);
         let mut system: Vec<T> = right.iter().map(|&v| T::from_complex(v)).collect();
-        let borders = if harmonic == 0 {
-            self.problem.borders.len()
-        } else {
-            0
+        let matrix = self.problem.shifted::<T>(k, shift);
+        system.resize(matrix.nrows(), T::zero_impl());
+        let solution = match self.problem.even_part() {
+            Some(even) if harmonic == 0 => even.solve(&matrix, &system),
+            _ => Factorised::new(matrix).solve(&system),
         };
-        system.extend((0..borders).map(|_| T::from_complex(C64::new(0.0, 0.0))));
-        let solution = Factorised::new(self.problem.shifted::<T>(k, shift)).solve(&system);
         if solution.iter().any(|v| !v.complex().norm().is_finite()) {
             return Err(Error::computation(format!(
                 "the problem for X[{harmonic};{order}] is singular: a resonance at k = {}",
@@ -136,15 +135,9 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let mass = self.problem.mass::<T>(self.k);
         let fundamental = self.solver_basis(&self.modes[&(1, 1)].values);
         let fundamental: Vec<T> = fundamental.iter().map(|&v| T::from_complex(v)).collect();
-        let column = crate::dense::apply(mass.as_ref(), &fundamental);
         let left: Vec<T> = self.pair.left.iter().map(|&v| T::from_complex(v)).collect();
-        let row = crate::dense::apply_adjoint(mass.as_ref(), &left);
-        let bordered = faer::Mat::from_fn(n + 1, n + 1, |i, j| match (i < n, j < n) {
-            (true, true) => matrix[(i, j)],
-            (true, false) => column[i],
-            (false, true) => T::from_complex(row[j].complex().conj()),
-            (false, false) => T::from_complex(C64::new(0.0, 0.0)),
-        });
+        let border = (mass.apply(&fundamental), mass.apply_adjoint(&left));
+        let bordered = crate::dense::bordered(&matrix, &[border]);
         let mut system: Vec<T> = right.iter().map(|&v| T::from_complex(v)).collect();
         system.push(T::from_complex(C64::new(0.0, 0.0)));
         let solution = Factorised::new(bordered).solve(&system);
@@ -206,7 +199,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
     }
 
     /// Physical values in the solver's basis.
-    fn solver_basis(&self, values: &[C64]) -> Vec<C64> {
+    pub(super) fn solver_basis(&self, values: &[C64]) -> Vec<C64> {
         let ones = vec![C64::new(1.0, 0.0); values.len()];
         let turns = self.problem.physical(&ones);
         values.iter().zip(turns).map(|(v, t)| v / t).collect()
@@ -240,7 +233,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
             let factor = C64::new(q as f64 * c.re, k as f64 * c.im);
             let mass = self.problem.mass::<C64>(k as f64 * self.k);
             let values = self.solver_basis(&mode.values);
-            let product = crate::dense::apply(mass.as_ref(), &values);
+            let product = mass.apply(&values);
             right
                 .iter_mut()
                 .zip(product)
@@ -261,18 +254,18 @@ impl<'p, 'm> Expansion<'p, 'm> {
             if !structure.forms[degree - 2][row] {
                 continue;
             }
-            for factor in factors {
-                self.prepare(*factor, row);
-            }
-            let tables: Vec<&Vec<Vec<C64>>> = factors
-                .iter()
-                .map(|((k, m), conjugate)| &self.jets[&(*k, *m, *conjugate, row)])
-                .collect();
             let block = &problem.direct.layout.rows[row];
+            for (key, _) in factors {
+                self.prepare(*key, block.grid);
+            }
+            let tables: Vec<&JetTable> = factors
+                .iter()
+                .map(|(key, conjugate)| self.jets[&(*key, block.grid)].of(*conjugate))
+                .collect();
             let turn = problem.direct.row_factor(row) * multiplicity;
             for (i, c) in problem.nonlinear[row].iter().enumerate() {
                 let arguments: [&[C64]; 4] =
-                    std::array::from_fn(|a| tables.get(a).map_or(&[][..], |t| t[i].as_slice()));
+                    std::array::from_fn(|a| tables.get(a).map_or(&[][..], |t| t.at(i)));
                 let value = problem.model.form(degree, row, c, &arguments[..degree]);
                 right[block.offset + i] += turn * value;
             }
@@ -311,22 +304,13 @@ impl<'p, 'm> Expansion<'p, 'm> {
         }
     }
 
-    /// Jets of one factor on one row's grid; rows on one grid share them.
-    fn prepare(&mut self, factor: (Key, bool), row: usize) {
-        let ((k, m), conjugate) = factor;
-        if self.jets.contains_key(&(k, m, conjugate, row)) {
-            return;
-        }
-        let rows = &self.problem.direct.layout.rows;
-        let grid = rows[row].grid;
-        let twin = (0..rows.len())
-            .filter(|&r| rows[r].grid == grid)
-            .find_map(|r| self.jets.get(&(k, m, conjugate, r)).cloned());
-        let table = twin.unwrap_or_else(|| {
-            let jets = &self.problem.structure().form_jets;
-            self.factor(factor).jets(self.problem, self.k, jets, grid)
+    /// Jets of one mode on one grid.
+    fn prepare(&mut self, key: Key, grid: GridKind) {
+        let (problem, k, mode) = (self.problem, self.k, &self.modes[&key]);
+        self.jets.entry((key, grid)).or_insert_with(|| {
+            let jets = &problem.structure().form_jets;
+            Jets::new(mode.jets(problem, k, jets, grid))
         });
-        self.jets.insert((k, m, conjugate, row), table);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::expansion::Expansion;
 use super::normalisation::{quadrature_grid, quadrature_weights};
 use crate::collocation::Grid;
-use crate::dense::{apply, dot};
+use crate::dense::dot;
 use crate::error::Result;
 use crate::model::{C64, KernelId, evaluate};
 use crate::problem::Problem;
@@ -118,16 +118,7 @@ impl Expansion<'_, '_> {
     /// ⟨left vector, forcing⟩ / ⟨left vector, M0 X[1;1]⟩ with the discrete left vector.
     pub fn project(&self, forcing: &[C64]) -> C64 {
         let mass = self.problem.mass::<C64>(self.k);
-        let turns = self
-            .problem
-            .physical(&vec![C64::new(1.0, 0.0); forcing.len()]);
-        let fundamental: Vec<C64> = self.modes[&(1, 1)]
-            .values
-            .iter()
-            .zip(turns)
-            .map(|(v, t)| v / t)
-            .collect();
-        let mass_x = apply(mass.as_ref(), &fundamental);
+        let mass_x = mass.apply(&self.solver_basis(&self.modes[&(1, 1)].values));
         dot(&self.pair.left, forcing) / dot(&self.pair.left, &mass_x)
     }
 }

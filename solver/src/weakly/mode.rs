@@ -1,6 +1,7 @@
 //! One Fourier mode X[k;m] of the expansion, and its derivatives where nonlinear terms need them.
 
-use crate::collocation::GridKind;
+use crate::collocation::{Grid, GridKind};
+use crate::dense::vectorised;
 use crate::model::{C64, Jet};
 use crate::problem::{Problem, quarter_turn};
 
@@ -28,47 +29,128 @@ impl Mode {
         }
     }
 
-    /// Jets at the points of one grid: `[point][jet]`.
-    pub fn jets(&self, problem: &Problem, k: f64, jets: &[Jet], grid: GridKind) -> Vec<Vec<C64>> {
-        let columns: Vec<Vec<C64>> = jets
-            .iter()
-            .map(|&jet| self.jet(problem, k, jet, grid))
-            .collect();
-        let points = columns.first().map_or(0, Vec::len);
-        (0..points)
-            .map(|i| columns.iter().map(|column| column[i]).collect())
-            .collect()
+    /// Jets at the points of one grid.
+    pub fn jets(&self, problem: &Problem, k: f64, jets: &[Jet], grid: GridKind) -> JetTable {
+        // Jets that differ in ∂x alone share one derivative of the profile.
+        let mut derived: Vec<(Jet, Vec<C64>)> = Vec::new();
+        let mut table = JetTable {
+            jets: jets.len(),
+            values: Vec::new(),
+        };
+        for (position, &jet) in jets.iter().enumerate() {
+            let profile = Jet {
+                x: 0,
+                absx: 0,
+                ..jet
+            };
+            let known = derived.iter().position(|(other, _)| *other == profile);
+            let known = known.unwrap_or_else(|| {
+                derived.push((profile, self.profile(problem, profile, grid)));
+                derived.len() - 1
+            });
+            let column = &derived[known].1;
+            if table.values.is_empty() {
+                table.values = vec![C64::new(0.0, 0.0); column.len() * jets.len()];
+            }
+            let factor = self.symbol(k, jet);
+            let entries = table.values.iter_mut().skip(position).step_by(jets.len());
+            for (entry, value) in entries.zip(column) {
+                *entry = factor * value;
+            }
+        }
+        table
     }
 
     /// One jet at the points of a grid.
     pub fn jet(&self, problem: &Problem, k: f64, jet: Jet, grid: GridKind) -> Vec<C64> {
-        let field = usize::from(jet.field);
+        let factor = self.symbol(k, jet);
+        let mut values = self.profile(problem, jet, grid);
+        values.iter_mut().for_each(|v| *v *= factor);
+        values
+    }
+
+    /// (i k)^x |k|^absx of a jet.
+    fn symbol(&self, k: f64, jet: Jet) -> C64 {
         let kx = f64::from(self.harmonic) * k;
-        let mut factor = quarter_turn(usize::from(jet.x)) * kx.powi(i32::from(jet.x));
-        factor *= kx.abs().powi(i32::from(jet.absx));
+        let size = kx.powi(i32::from(jet.x)) * kx.abs().powi(i32::from(jet.absx));
+        quarter_turn(usize::from(jet.x)) * size
+    }
+
+    /// ∂t and ∂y of a jet at the points of a grid, its x-derivatives left out.
+    fn profile(&self, problem: &Problem, jet: Jet, grid: GridKind) -> Vec<C64> {
+        let field = usize::from(jet.field);
         let Some(block) = problem.direct.layout.columns.get(field) else {
             let profiles = problem.direct.layout.columns.len();
-            let value = self
-                .uniform
-                .get(field - profiles)
-                .copied()
-                .unwrap_or_default();
-            let points = crate::collocation::Grid::new(grid).len();
-            return vec![value * factor; points];
+            let value = self.uniform.get(field - profiles).copied();
+            return vec![value.unwrap_or_default(); Grid::new(grid).len()];
         };
-        factor *= problem.scale().powi(i32::from(jet.y));
         let source = if jet.t == 0 { &self.values } else { &self.rate };
         let source = &source[block.offset..block.offset + block.len];
-        let matrix = problem
-            .discretisation
-            .matrix(block.grid, grid, usize::from(jet.y));
-        let mut result = vec![C64::new(0.0, 0.0); matrix.nrows()];
-        for (j, value) in source.iter().enumerate() {
-            let value = value * factor;
-            for (r, m) in result.iter_mut().zip(matrix.col(j).iter()) {
-                *r += value * *m;
-            }
+        let order = usize::from(jet.y);
+        let matrix = problem.discretisation.matrix(block.grid, grid, order);
+        let scale = problem.scale().powi(i32::from(jet.y));
+        // Real and imaginary parts apart: with a mirror symmetry one of them is zero.
+        let part = |of: fn(&C64) -> f64| {
+            let mut result = vec![0.0; matrix.nrows()];
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (j, value) in source.iter().enumerate() {
+                        let value = of(value) * scale;
+                        if value != 0.0 {
+                            for (r, m) in result.iter_mut().zip(matrix.col_as_slice(j)) {
+                                *r += value * m;
+                            }
+                        }
+                    }
+                },
+            );
+            result
+        };
+        let parts = part(|v| v.re).into_iter().zip(part(|v| v.im));
+        parts.map(|(re, im)| C64::new(re, im)).collect()
+    }
+}
+
+/// Jets at the points of a grid, point by point.
+#[derive(Clone, Debug)]
+pub struct JetTable {
+    jets: usize,
+    values: Vec<C64>,
+}
+
+impl JetTable {
+    /// All jets at one point.
+    pub fn at(&self, point: usize) -> &[C64] {
+        &self.values[point * self.jets..][..self.jets]
+    }
+
+    /// The jets of the conjugate mode.
+    fn conjugate(&self) -> JetTable {
+        JetTable {
+            jets: self.jets,
+            values: self.values.iter().map(|v| v.conj()).collect(),
         }
-        result
+    }
+}
+
+/// A mode's jets and those of its conjugate.
+pub struct Jets {
+    plain: JetTable,
+    conjugate: JetTable,
+}
+
+impl Jets {
+    pub fn new(plain: JetTable) -> Self {
+        let conjugate = plain.conjugate();
+        Jets { plain, conjugate }
+    }
+
+    pub fn of(&self, conjugate: bool) -> &JetTable {
+        if conjugate {
+            &self.conjugate
+        } else {
+            &self.plain
+        }
     }
 }

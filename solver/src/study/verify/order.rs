@@ -162,7 +162,7 @@ fn residuals(
                 let turn = C64::from_polar(1.0, *harmonic as f64 * theta);
                 // X[0;m] stands once, the others with their conjugates.
                 let weight = if *harmonic == 0 { size } else { 2.0 * size };
-                for (value, jet) in x.iter_mut().zip(&table[i]) {
+                for (value, jet) in x.iter_mut().zip(table.at(i)) {
                     *value += weight * (jet * turn).re;
                 }
             }
