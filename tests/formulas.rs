@@ -3,6 +3,7 @@
 use crate::support::built;
 use approx::assert_relative_eq;
 use landau_solver::base;
+use landau_solver::collocation::Stretch;
 use landau_solver::model::{KernelId, Structure, evaluate};
 use landau_solver::parameters::Parameters;
 use num_dual::{DualNum, second_derivative, second_partial_derivative};
@@ -161,5 +162,30 @@ fn nonlinear_wall() {
             c2,
             1e-8 * c2.abs(),
         );
+    }
+}
+
+/// η(ξ) of a stretched base coordinate: inverse of ξ(η), derivatives of asinh.
+#[test]
+fn stretched_coordinate() {
+    let (centre, width) = (0.3_f64, 0.02_f64);
+    let layer = Stretch::Layer { centre, width };
+    for i in 0..=50 {
+        let eta = -1.0 + 0.04 * f64::from(i);
+        assert_relative_eq!(layer.eta(layer.xi(eta)), eta, epsilon = 1e-13);
+    }
+    let rate = 0.5 * (((1.0 - centre) / width).asinh() + ((1.0 + centre) / width).asinh());
+    for xi in [-0.9, 0.2, 0.29, 0.3, 0.8] {
+        let s: f64 = xi - centre;
+        let square = s * s + width * width;
+        let composed = layer.compose(xi, &[layer.eta(xi), 1.0, 0.0, 0.0]);
+        let exact = [
+            1.0 / square.sqrt(),
+            -s / square.powf(1.5),
+            (2.0 * s * s - width * width) / square.powf(2.5),
+        ];
+        for (found, exact) in composed[1..].iter().zip(exact) {
+            assert_relative_eq!(*found, exact / rate, max_relative = 1e-12, epsilon = 1e-9);
+        }
     }
 }

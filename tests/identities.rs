@@ -204,6 +204,23 @@ fn adjoint_difference_falls_with_resolution() {
     );
 }
 
+/// The slow modes crowd at a continuous spectrum: what `spectrum` reports falls with M.
+#[test]
+fn slow_modes_of_the_adjoint_converge() {
+    let reported = |resolution: usize| {
+        let line = format!("spectrum vibrated_bed --k 0.05 -M {resolution}");
+        let found = crate::support::json(&line);
+        [1, 2, 4].map(|i| crate::support::number(&found, &format!("/difference/{i}")))
+    };
+    let (coarse, fine) = (reported(50), reported(100));
+    for (coarse, fine) in coarse.iter().zip(fine) {
+        assert!(
+            fine < 0.1 * coarse,
+            "{coarse:.2e} at M = 50, {fine:.2e} at M = 100"
+        );
+    }
+}
+
 /// A model whose coefficients of one nonlinear term have the wrong sign.
 struct Planted {
     model: Box<dyn Model>,

@@ -9,3 +9,4 @@ mod identities;
 mod published;
 mod published_bed;
 mod support;
+mod tutorial;

@@ -217,4 +217,21 @@ fn granular_couette() {
         26.6442211932569,
         1e-8 * 26.6,
     );
+    // Long waves become unstable: the limit k/H → 0 by Richardson's extrapolation in H⁻².
+    let onset = |gap: f64| {
+        let line = format!("critical granular_couette --vary phi0 --from 0.12 --to 0.19 --k {k}");
+        number(&json(&format!("{line} --set H={gap} --near 0")), "/value")
+    };
+    let limit = (9.0 * onset(3000.0) - onset(1000.0)) / 8.0;
+    close("long waves", limit, 0.154044114980447, 1e-8);
+    // c2 changes sign on the neutral curve, at 0.17323 as printed.
+    let c2 = |fraction: f64| {
+        let line = format!("--k {k} --set phi0={fraction}");
+        let gap = json(&format!(
+            "critical granular_couette --vary H --from 20 --to 100 {line}"
+        ));
+        let line = format!("{line} --near 0 --set H={}", number(&gap, "/value"));
+        number(&json(&format!("point granular_couette {line}")), "/c2/0")
+    };
+    assert!(c2(0.173225) > 0.0 && c2(0.173235) < 0.0);
 }

@@ -1,7 +1,10 @@
 //! The vibrated bed against Shukla, Ansari, van der Meer, Lohse & Alam (2014) and against an
 //! independent program (spectral collocation, truncated series, fully nonlinear Newton solution).
 
-use crate::support::{close, json, landau, number, root};
+use crate::support::{built, close, json, landau, number, root};
+use landau_solver::collocation::{Grid, GridKind, clenshaw_curtis};
+use landau_solver::study::Setup;
+use rayon::prelude::*;
 
 fn critical(options: &str) -> f64 {
     number(&json(&format!("critical vibrated_bed {options}")), "/value")
@@ -248,25 +251,74 @@ fn second_closure() {
 /// Base states over the range of the experiments keep their conditions to 1e-10.
 #[test]
 fn base_states() {
-    for settings in [
-        "",
-        "--set S=50",
-        "--set S=1000",
-        "--set F=4 --set e=0.99 --set S=800",
-        "--set F=16 --set S=400",
-        "--set F=10 --set S=200",
-        "--set F=16 --set e=0.8 --set S=1000",
-        "--set H=auto",
-    ] {
-        let found = json(&format!("base vibrated_bed {settings} --points 3"));
-        close(
-            &format!("T(0) {settings}"),
-            number(&found, "/profiles/T/0"),
-            1.0,
-            1e-10,
-        );
-        assert!(number(&found, "/residual") < 1e-10, "{settings}: {found}");
+    // The corners of F in 4..16, S in 50..1000, e in 0.8..0.99, and places between.
+    let mut places = vec![(6.0, 100.0, 0.9), (10.0, 200.0, 0.9), (16.0, 200.0, 0.8)];
+    for corner in 0..8 {
+        let pick =
+            |bit: usize, low: f64, high: f64| if corner >> bit & 1 == 0 { low } else { high };
+        places.push((
+            pick(0, 4.0, 16.0),
+            pick(1, 50.0, 1000.0),
+            pick(2, 0.8, 0.99),
+        ));
     }
+    let model = built("vibrated_bed");
+    let cases = places
+        .iter()
+        .flat_map(|place| [(place, "40"), (place, "auto")]);
+    cases
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .for_each(|(&(layers, shaking, e), height)| {
+            let settings = [
+                format!("F={layers}"),
+                format!("S={shaking}"),
+                format!("e={e}"),
+                format!("H={height}"),
+            ];
+            let mut setup = Setup::new(model.as_ref(), 50);
+            for (name, text) in settings.iter().filter_map(|s| s.split_once('=')) {
+                let set = setup.parameters.set_text(model.structure(), name, text);
+                set.expect("a parameter of the bed");
+            }
+            let state = setup
+                .base(None)
+                .unwrap_or_else(|error| panic!("{settings:?}: {error}"));
+            let structure = model.structure();
+            let place = |field: &str, order| {
+                let field = structure.fields.iter().position(|f| f.name == field);
+                structure.base_position(field.expect("a field"), order)
+            };
+            let bottom = state.point(model.as_ref(), -1.0, 0.0);
+            close(
+                &format!("T(0) {settings:?}"),
+                bottom[place("T", 0)],
+                1.0,
+                1e-10,
+            );
+            // κ grows with √T: the flux against that of the whole bed.
+            let top = state.point(model.as_ref(), 1.0, 0.0);
+            let flux = |point: &[f64]| point[place("T", 0)].sqrt() * point[place("T", 1)];
+            close(
+                &format!("flux(H) {settings:?}"),
+                flux(&top) / flux(&bottom),
+                0.0,
+                1e-10,
+            );
+            // ∫n by a rule of its own: 600 panels of 17 points.
+            let weights = clenshaw_curtis(17);
+            let nodes = Grid::new(GridKind::Lobatto(17)).nodes;
+            let (panels, mut mass) = (600, 0.0);
+            for panel in 0..panels {
+                for (node, weight) in nodes.iter().zip(&weights) {
+                    let xi = -1.0 + (2.0 * f64::from(panel) + 1.0 + node) / f64::from(panels);
+                    let point = state.point(model.as_ref(), xi, 0.0);
+                    mass += weight * point[place("n", 0)] / f64::from(panels);
+                }
+            }
+            mass *= 0.5 * (state.upper - state.lower);
+            close(&format!("mass {settings:?}"), mass, layers, 1e-10 * layers);
+        });
     // What cannot be resolved is refused.
     let refused = landau(&[
         "base",
@@ -274,9 +326,9 @@ fn base_states() {
         "--set",
         "F=40",
         "--set",
-        "S=1",
+        "S=50",
         "--set",
-        "H=200",
+        "H=20",
     ]);
     assert_eq!(
         (refused.status, refused.out.as_str()),

@@ -136,6 +136,25 @@ impl<T: Scalar> Factorised<T> {
         }
     }
 
+    /// A⁻¹ b, or nothing where A is singular.
+    pub fn solve_regular(&self, right: &[T]) -> Option<Vec<T>> {
+        if self.is_singular() {
+            return None;
+        }
+        let solution = self.solve(right);
+        solution
+            .iter()
+            .all(|x| x.size().is_finite())
+            .then_some(solution)
+    }
+
+    /// Whether rounding alone keeps the matrix from being singular.
+    fn is_singular(&self) -> bool {
+        let pivots = (0..self.scale.len()).map(|i| self.factors[(i, i)].size());
+        let (least, most) = pivots.fold((f64::INFINITY, 0.0_f64), |(a, b), p| (a.min(p), b.max(p)));
+        least.is_nan() || least <= f64::EPSILON * most
+    }
+
     /// A⁻¹ b
     pub fn solve(&self, right: &[T]) -> Vec<T> {
         let mut x: Vec<T> = right

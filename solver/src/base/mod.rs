@@ -12,12 +12,32 @@ use newton::{Failure, Newton};
 
 /// Degrees tried until the Chebyshev coefficients have died out.
 const DEGREES: [usize; 7] = [36, 54, 80, 120, 180, 270, 400];
-/// A profile whose last coefficients are smaller than this fraction of the largest is resolved.
-const RESOLVED: f64 = 1e-13;
+/// How good a state has to be.
+#[derive(Clone, Copy)]
+struct Accuracy {
+    /// Size of the last coefficients relative to the largest at which a profile is resolved.
+    tail: f64,
+    /// Relative change at which an automatic parameter is settled.
+    change: f64,
+}
+
+const FULL: Accuracy = Accuracy {
+    tail: 1e-13,
+    change: 1e-11,
+};
+/// For states that are only on the way to another.
+const ROUGH: Accuracy = Accuracy {
+    tail: 1e-7,
+    change: 1e-3,
+};
 /// Beyond this fraction at the highest degree the profile counts as unresolved.
 const UNRESOLVED: f64 = 1e-9;
+/// Relative Newton step of an automatic parameter that says that its condition is flat.
+const BLIND: f64 = 1e3;
+/// Newton steps for the automatic parameters.
+const MOST_ADJUSTMENTS: usize = 25;
 /// Smallest step of the continuation in parameters, as a fraction of the way.
-const SMALLEST_STEP: f64 = 1.0 / 128.0;
+const SMALLEST_STEP: f64 = 1.0 / 256.0;
 
 /// The base state at the given parameters, those set to `auto` determined on the way.
 ///
@@ -34,8 +54,19 @@ pub fn solve_near(
     near: Option<&BaseState>,
 ) -> Result<BaseState> {
     if parameters.automatic.iter().any(|a| *a) {
-        return determine(model, parameters, near);
+        determine(model, parameters, near)
+    } else {
+        fixed(model, parameters, near, FULL)
     }
+}
+
+/// The state where every parameter has a value.
+fn fixed(
+    model: &dyn Model,
+    parameters: &Parameters,
+    near: Option<&BaseState>,
+    accuracy: Accuracy,
+) -> Result<BaseState> {
     check_interval(model, parameters)?;
     let structure = model.structure();
     if structure.base.solved.is_empty() {
@@ -44,12 +75,30 @@ pub fn solve_near(
         return Ok(state);
     }
     let start = near.filter(|state| state.case == parameters.case(structure));
-    let newton = Newton { model, parameters };
-    if let Ok(state) = newton.refine(start, &DEGREES) {
-        return finish(model, state);
+    let newton = Newton {
+        model,
+        parameters,
+        resolved: accuracy.tail,
+    };
+    let state = match newton.refine(start, &DEGREES) {
+        Ok(state) => state,
+        Err(_) => {
+            let rough = continuation(model, parameters, start)?;
+            let refined = newton.refine(Some(&rough), &DEGREES);
+            let place = "at the end of the continuation";
+            refined.map_err(|failure| describe(model, parameters, &failure, place))?
+        }
+    };
+    let tail = state.tail();
+    if tail > UNRESOLVED.max(accuracy.tail) {
+        return Err(Error::computation(format!(
+            "the base state is not resolved with {} Chebyshev polynomials (relative tail {tail:.1e}); \
+             try a smaller interval or milder parameters",
+            state.degree
+        )));
     }
-    let state = continuation(model, parameters, start)?;
-    finish(model, state)
+    state.check_ranges(model, tail)?;
+    Ok(state)
 }
 
 fn check_interval(model: &dyn Model, parameters: &Parameters) -> Result<()> {
@@ -62,20 +111,7 @@ fn check_interval(model: &dyn Model, parameters: &Parameters) -> Result<()> {
     )))
 }
 
-fn finish(model: &dyn Model, state: BaseState) -> Result<BaseState> {
-    let tail = state.tail();
-    if tail > UNRESOLVED {
-        return Err(Error::computation(format!(
-            "the base state is not resolved with {} Chebyshev polynomials (relative tail {tail:.1e}); \
-             try a smaller interval or milder parameters",
-            state.degree
-        )));
-    }
-    state.check_ranges(model)?;
-    Ok(state)
-}
-
-/// From a state that can be found to the one that is asked for, in steps that adapt.
+/// From a state that can be found to roughly the one that is asked for, in steps that adapt.
 fn continuation(
     model: &dyn Model,
     target: &Parameters,
@@ -86,12 +122,15 @@ fn continuation(
         None => at_defaults(model, target)?,
     };
     let step = |parameters: &Parameters, from: &BaseState| {
-        Newton { model, parameters }
-            .refine(Some(from), &DEGREES)
-            .map_err(|failure| {
-                let place = "on the way from the default parameters";
-                describe(model, parameters, &failure, place)
-            })
+        let newton = Newton {
+            model,
+            parameters,
+            resolved: ROUGH.tail,
+        };
+        newton.refine(Some(from), &DEGREES).map_err(|failure| {
+            let place = "on the way from the default parameters";
+            describe(model, parameters, &failure, place)
+        })
     };
     walk(target, start, step)
 }
@@ -108,6 +147,7 @@ fn at_defaults(model: &dyn Model, target: &Parameters) -> Result<BaseState> {
     Newton {
         model,
         parameters: &parameters,
+        resolved: FULL.tail,
     }
     .refine(None, &DEGREES)
     .map_err(|failure| describe(model, &parameters, &failure, "at the default parameters"))
@@ -184,15 +224,22 @@ fn determine(
     parameters: &Parameters,
     near: Option<&BaseState>,
 ) -> Result<BaseState> {
-    let direct = adjust(model, parameters, near);
-    if direct.is_ok() || near.is_some() {
-        return direct;
+    if let Ok(state) = adjust(model, parameters, near, FULL) {
+        return Ok(state);
     }
     // The automatic parameters adjusted at every step: their defaults may suit no other values.
-    let mut start = at_defaults(model, parameters)?.parameters;
-    start.automatic.clone_from(&parameters.automatic);
-    let first = adjust(model, &start, None)?;
-    walk(parameters, first, |at, from| adjust(model, at, Some(from)))
+    let start = match near {
+        Some(state) => state.clone(),
+        None => {
+            let mut defaults = at_defaults(model, parameters)?.parameters;
+            defaults.automatic.clone_from(&parameters.automatic);
+            adjust(model, &defaults, None, ROUGH)?
+        }
+    };
+    let rough = walk(parameters, start, |at, from| {
+        adjust(model, at, Some(from), ROUGH)
+    })?;
+    adjust(model, parameters, Some(&rough), FULL)
 }
 
 /// Newton's method on the automatic parameters, their derivative by differences.
@@ -200,6 +247,7 @@ fn adjust(
     model: &dyn Model,
     parameters: &Parameters,
     near: Option<&BaseState>,
+    accuracy: Accuracy,
 ) -> Result<BaseState> {
     let structure = model.structure();
     let unknown: Vec<usize> = (0..parameters.values.len())
@@ -226,16 +274,16 @@ fn adjust(
         });
         nalgebra::DVector::from_iterator(unknown.len(), values)
     };
-    let mut state = solve_near(model, &current, near)?;
+    let mut state = fixed(model, &current, near, accuracy)?;
     let mut residual = conditions(&state);
-    for _ in 0..80 {
+    for _ in 0..MOST_ADJUSTMENTS {
         let n = unknown.len();
         let mut jacobian = nalgebra::DMatrix::zeros(n, n);
         for (column, &index) in unknown.iter().enumerate() {
             let mut moved = current.clone();
             let step = 1e-6 * moved.values[index].abs().max(1e-3);
             moved.values[index] += step;
-            let shifted = conditions(&solve_near(model, &moved, Some(&state))?);
+            let shifted = conditions(&fixed(model, &moved, Some(&state), accuracy)?);
             jacobian.set_column(column, &((shifted - &residual) / step));
         }
         let Some(step) = jacobian.lu().solve(&(-&residual)) else {
@@ -248,9 +296,13 @@ fn adjust(
             current.values[index] = value + change.clamp(-bound, bound);
             largest = largest.max((change / value.abs().max(1e-300)).abs());
         }
-        state = solve_near(model, &current, Some(&state))?;
+        // The condition does not feel the parameter here.
+        if largest.is_nan() || largest > BLIND {
+            break;
+        }
+        state = fixed(model, &current, Some(&state), accuracy)?;
         residual = conditions(&state);
-        if largest < 1e-11 {
+        if largest < accuracy.change {
             return Ok(state);
         }
     }

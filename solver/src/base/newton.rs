@@ -1,11 +1,11 @@
 //! Damped Newton iteration for the base state, collocated on Chebyshev points.
 //!
 //! A field whose balance has order q in it is a polynomial of degree N, its balance collocated at
-//! N+1−q Gauss points; wall and integral conditions make up the difference.
+//! N+1−q Gauss points; wall and integral conditions make up the difference. Where a layer inside
+//! asks for it, the polynomials are in a stretched coordinate η.
 
-use super::RESOLVED;
 use super::state::{BaseState, interval};
-use crate::collocation::{Grid, GridKind, clenshaw_curtis, coefficients};
+use crate::collocation::{Grid, GridKind, Stretch, clenshaw_curtis, coefficients};
 use crate::model::{BaseJet, End, KernelId, Model, evaluate};
 use crate::parameters::Parameters;
 use faer::Mat;
@@ -17,6 +17,8 @@ const SMALLEST_DAMPING: f64 = 1e-3;
 /// Consecutive degrees at which the iteration may fail.
 const MOST_FAILURES: usize = 2;
 const CONVERGED: f64 = 1e-10;
+/// Degree at which an unresolved profile is looked at for a layer.
+const STRETCHED_FROM: usize = 120;
 
 /// Why an iteration gave up.
 pub(super) enum Failure {
@@ -45,12 +47,15 @@ impl fmt::Display for Failure {
 pub(super) struct Newton<'a> {
     pub model: &'a dyn Model,
     pub parameters: &'a Parameters,
+    /// Relative size of the last coefficients at which a profile counts as resolved.
+    pub resolved: f64,
 }
 
 /// The discretised problem at one degree.
 struct Discrete<'a> {
     newton: &'a Newton<'a>,
     degree: usize,
+    stretch: Stretch,
     lower: f64,
     upper: f64,
     case: usize,
@@ -67,6 +72,26 @@ struct Discrete<'a> {
 /// d^order/dξ^order for orders 0 to 2.
 type Matrices = Vec<Mat<f64>>;
 
+/// Derivatives by ξ of polynomials in η, at points given in η.
+fn stretched(from: &Grid, to: &Grid, stretch: Stretch) -> Matrices {
+    let by_eta: Matrices = (0..=2).map(|order| from.derivative_on(to, order)).collect();
+    if stretch == Stretch::None {
+        return by_eta;
+    }
+    let rates: Vec<Vec<f64>> = to
+        .nodes
+        .iter()
+        .map(|&eta| stretch.taylor(stretch.xi(eta), 2))
+        .collect();
+    // d/dξ = η' d/dη, d²/dξ² = η'² d²/dη² + η'' d/dη
+    let first = Mat::from_fn(to.len(), from.len(), |i, j| rates[i][0] * by_eta[1][(i, j)]);
+    let second = Mat::from_fn(to.len(), from.len(), |i, j| {
+        rates[i][0].powi(2) * by_eta[2][(i, j)] + 2.0 * rates[i][1] * by_eta[1][(i, j)]
+    });
+    let values = by_eta.into_iter().next().into_iter();
+    values.chain([first, second]).collect()
+}
+
 impl Newton<'_> {
     /// The state at rising degree until its coefficients have died out.
     pub fn refine(
@@ -82,13 +107,23 @@ impl Newton<'_> {
         };
         let mut previous = start.cloned();
         let (mut best, mut last, mut failures) = (None, Failure::NotFinite, 0);
+        // A layer that is followed may ask for less than the state before did.
         let first = start.map_or(0, |s| {
-            degrees.iter().position(|&d| d >= s.degree).unwrap_or(0)
+            let same = degrees.iter().position(|&d| d >= s.degree).unwrap_or(0);
+            same.saturating_sub(usize::from(s.degree > STRETCHED_FROM))
         });
+        // The layer of the state before, where it was hard to resolve.
+        let mut stretch = match start {
+            Some(state) if state.degree >= STRETCHED_FROM => state.widened(),
+            _ => Stretch::None,
+        };
         for &degree in &degrees[first.min(degrees.len() - 1)..] {
-            match self.solve(previous.as_ref(), degree) {
+            match self.solve(previous.as_ref(), degree, stretch) {
                 Ok(state) => {
-                    let resolved = state.tail() < RESOLVED;
+                    let resolved = state.tail() < self.resolved;
+                    if degree >= STRETCHED_FROM {
+                        stretch = state.widened();
+                    }
                     // Rounding sets a floor to the tail; beyond it more polynomials do not help.
                     let stalled = best.as_ref().is_some_and(|b: &BaseState| {
                         b.tail() < 1e-10 && state.tail() > 0.3 * b.tail()
@@ -114,7 +149,12 @@ impl Newton<'_> {
         best.ok_or(last)
     }
 
-    fn solve(&self, start: Option<&BaseState>, degree: usize) -> Result<BaseState, Failure> {
+    fn solve(
+        &self,
+        start: Option<&BaseState>,
+        degree: usize,
+        stretch: Stretch,
+    ) -> Result<BaseState, Failure> {
         let structure = self.model.structure();
         let (lower, upper) = interval(self.model, self.parameters);
         let mut offsets = Vec::new();
@@ -129,12 +169,7 @@ impl Newton<'_> {
         }
         let case = self.parameters.case(structure);
         let grid = Grid::new(GridKind::Lobatto(degree + 1));
-        let to = |kind: GridKind| -> Matrices {
-            let points = Grid::new(kind);
-            (0..=2)
-                .map(|order| grid.derivative_on(&points, order))
-                .collect()
-        };
+        let to = |kind: GridKind| stretched(&grid, &Grid::new(kind), stretch);
         let orders = structure.base.rows.iter().map(|row| row.order);
         let rows = orders
             .map(|order| to(GridKind::Gauss(degree + 1 - order)))
@@ -144,6 +179,7 @@ impl Newton<'_> {
         let discrete = Discrete {
             newton: self,
             degree,
+            stretch,
             lower,
             upper,
             case,
@@ -171,7 +207,8 @@ impl Discrete<'_> {
         let template = self.state(&vec![0.0; self.size], 0.0);
         let grid = self.grid();
         let mut values = vec![0.0; self.size];
-        for (i, &xi) in grid.nodes.iter().enumerate() {
+        for (i, &eta) in grid.nodes.iter().enumerate() {
+            let xi = self.stretch.xi(eta);
             let point = match start {
                 Some(state) => state.point(self.model(), xi, 0.0),
                 None => template.point(self.model(), xi, 0.0),
@@ -218,6 +255,7 @@ impl Discrete<'_> {
             lower: self.lower,
             upper: self.upper,
             degree: self.degree,
+            stretch: self.stretch,
             series,
             residual,
         }
@@ -235,8 +273,9 @@ impl Discrete<'_> {
                 .map(|r| 1 + r.jets.len())
                 .sum();
             let points = Grid::new(GridKind::Gauss(self.degree + 1 - row.order));
-            for (i, &xi) in points.nodes.iter().enumerate() {
-                let out = evaluate(model, KernelId::Base, &state.point(model, xi, 0.0));
+            for (i, &eta) in points.nodes.iter().enumerate() {
+                let point = state.point(model, self.stretch.xi(eta), 0.0);
+                let out = evaluate(model, KernelId::Base, &point);
                 let slopes = &out[position + 1..=position + row.jets.len()];
                 rows.push((
                     out[position],
@@ -288,10 +327,11 @@ impl Discrete<'_> {
         let mut position = 0;
         for jets in &structure.base.integrals {
             let (mut total, mut row) = (0.0, vec![0.0; self.size]);
-            for (i, &xi) in self.grid().nodes.iter().enumerate() {
+            for (i, &eta) in self.grid().nodes.iter().enumerate() {
+                let xi = self.stretch.xi(eta);
                 let out = evaluate(model, KernelId::BaseIntegrals, &state.point(model, xi, 0.0));
                 let slopes = &out[position + 1..=position + jets.len()];
-                let weight = weights[i] * half;
+                let weight = weights[i] * half / self.stretch.taylor(xi, 1)[0];
                 total += weight * out[position];
                 if i == 0 {
                     total -= out[position + jets.len() + 1];
@@ -348,8 +388,8 @@ impl Discrete<'_> {
             .all(|(&field, &offset)| {
                 let info = &structure.fields[field];
                 let count = if info.uniform { 1 } else { self.degree + 1 };
-                // Rounding may carry a profile that dies out a little below zero.
-                let slack = 1e-9;
+                // Too low a degree carries a profile that dies out a little below zero.
+                let slack = 1e-6;
                 values[offset..offset + count]
                     .iter()
                     .all(|&v| v > info.lower - slack && v < info.upper + slack)

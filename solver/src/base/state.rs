@@ -1,6 +1,6 @@
 //! A base state: Chebyshev series of the solved fields, closed forms of the others.
 
-use crate::collocation::derivative_values;
+use crate::collocation::{Stretch, derivative_values};
 use crate::error::{Error, Result};
 use crate::model::{End, KernelId, Model, evaluate};
 use crate::parameters::Parameters;
@@ -17,6 +17,8 @@ pub struct BaseState {
     pub upper: f64,
     /// Degree of the series (0 where the base is in closed form).
     pub degree: usize,
+    /// The coordinate of the series.
+    pub stretch: Stretch,
     /// Chebyshev coefficients of each solved field, in the order of `solved`; one for a number.
     pub series: Vec<Vec<f64>>,
     /// Largest residual of the discretised base problem, relative to its terms.
@@ -31,6 +33,11 @@ pub(super) fn interval(model: &dyn Model, parameters: &Parameters) -> (f64, f64)
     (ends[0], ends[1])
 }
 
+/// Places at which the steepest layer is looked for.
+const LAYER_SAMPLES: usize = 2000;
+/// A layer wider than this part of the half-interval needs no coordinate of its own.
+const WIDE: f64 = 0.5;
+
 impl BaseState {
     /// A base that is given in closed form.
     pub(super) fn closed(model: &dyn Model, parameters: &Parameters) -> Self {
@@ -43,6 +50,7 @@ impl BaseState {
             lower,
             upper,
             degree: 0,
+            stretch: Stretch::None,
             series: Vec::new(),
             residual: 0.0,
         }
@@ -69,12 +77,12 @@ impl BaseState {
         let closed = evaluate(model, KernelId::Closed, &point);
         let first = structure.base_position(0, 0);
         point[first..].copy_from_slice(&closed);
+        let eta = self.stretch.eta(xi);
         for (&field, series) in structure.base.solved.iter().zip(&self.series) {
             let mut scale = 1.0;
-            for (order, value) in derivative_values(series, xi, structure.base_order)
-                .into_iter()
-                .enumerate()
-            {
+            let derivatives = derivative_values(series, eta, structure.base_order);
+            let derivatives = self.stretch.compose(xi, &derivatives);
+            for (order, value) in derivatives.into_iter().enumerate() {
                 point[structure.base_position(field, order)] = value * scale;
                 scale *= self.scale();
             }
@@ -106,6 +114,33 @@ impl BaseState {
         self.series.iter().map(tail).fold(0.0, f64::max)
     }
 
+    /// A coordinate that widens the steepest interior layer of a solved profile.
+    pub(super) fn widened(&self) -> Stretch {
+        let mut thinnest = (WIDE, Stretch::None);
+        let places = (1..LAYER_SAMPLES).map(|i| -1.0 + 2.0 * i as f64 / LAYER_SAMPLES as f64);
+        let places: Vec<f64> = places.collect();
+        for series in self.series.iter().filter(|s| s.len() > 1) {
+            let values = places
+                .iter()
+                .map(|&eta| derivative_values(series, eta, 0)[0]);
+            let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+                (a.min(v), b.max(v))
+            });
+            for &eta in &places {
+                let xi = self.stretch.xi(eta);
+                let derivatives = derivative_values(series, eta, 1);
+                let slope = self.stretch.compose(xi, &derivatives)[1].abs();
+                // Chebyshev points resolve a layer at an end by themselves.
+                let width = (most - least) / slope;
+                let seen = width / (1.0 - xi * xi + width).sqrt();
+                if seen < thinnest.0 {
+                    thinnest = (seen, Stretch::Layer { centre: xi, width });
+                }
+            }
+        }
+        thinnest.1
+    }
+
     /// A closed base has to satisfy the balances that do not vanish identically.
     pub(super) fn check_closed(&self, model: &dyn Model) -> Result<()> {
         let structure = model.structure();
@@ -130,14 +165,14 @@ impl BaseState {
         Ok(())
     }
 
-    /// Fields must stay in the ranges that the spec declares.
-    pub(super) fn check_ranges(&self, model: &dyn Model) -> Result<()> {
+    /// Fields must stay in the ranges that the spec declares, but for the truncation error.
+    pub(super) fn check_ranges(&self, model: &dyn Model, truncation: f64) -> Result<()> {
         let structure = model.structure();
         for step in 0..=64 {
             let point = self.point(model, -1.0 + step as f64 / 32.0, 0.0);
             for (field, info) in structure.fields.iter().enumerate() {
                 let value = point[structure.base_position(field, 0)];
-                let slack = 1e-9 * (1.0 + value.abs());
+                let slack = (1e-9 + 100.0 * truncation) * (1.0 + value.abs());
                 if !(value >= info.lower - slack && value <= info.upper + slack) {
                     return Err(Error::computation(format!(
                         "the base state leaves the range of `{}`: {value:.6e} at {} = {}",

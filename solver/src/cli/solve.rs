@@ -126,7 +126,11 @@ pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
                 "direct": list(&direct),
             });
             match &adjoint {
-                Ok(values) => object["adjoint"] = list(values),
+                Ok(values) => {
+                    object["adjoint"] = list(values);
+                    let differences = direct.iter().map(|&c| nearest(c, values));
+                    object["difference"] = differences.collect();
+                }
                 Err(reason) => {
                     object["adjoint"] = Value::Null;
                     object["adjoint_missing"] = Value::String(reason.to_string());
@@ -140,20 +144,28 @@ pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
             structure.title,
             setup.resolution
         );
-        say!("{:>44}   {:>44}", "L", "L†");
-        for (i, c) in direct.iter().take(20).enumerate() {
-            let other = adjoint
-                .as_ref()
-                .ok()
-                .and_then(|a| a.get(i))
-                .map_or(String::new(), |&c| report::shown(c));
-            say!("{:>44}   {:>44}", report::shown(*c), other);
+        let empty = Vec::new();
+        let others = adjoint.as_ref().unwrap_or(&empty);
+        say!("{:>44}   {:>44}   {:>10}", "L", "L†", "difference");
+        for (i, &c) in direct.iter().take(20).enumerate() {
+            let other = others.get(i).map_or(String::new(), |&a| report::shown(a));
+            let difference = match others.is_empty() {
+                true => String::new(),
+                false => format!("{:.1e}", nearest(c, others)),
+            };
+            say!("{:>44}   {other:>44}   {difference:>10}", report::shown(c));
         }
         if let Err(reason) = adjoint {
             say!("L†: {reason}");
         }
         Ok(())
     })
+}
+
+/// Distance from an eigenvalue of L to the nearest conjugate of one of L†: zero without truncation.
+fn nearest(c: C64, adjoint: &[C64]) -> f64 {
+    let distances = adjoint.iter().map(|a| (a.conj() - c).norm());
+    distances.fold(f64::INFINITY, f64::min)
 }
 
 pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()> {

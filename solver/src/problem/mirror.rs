@@ -41,8 +41,8 @@ impl Problem<'_> {
 }
 
 impl EvenPart {
-    /// A⁻¹ b for an even b; odd unknowns are zero.
-    pub fn solve<T: Scalar>(&self, matrix: &Mat<T>, right: &[T]) -> Vec<T> {
+    /// A⁻¹ b for an even b, odd unknowns being zero; nothing where A is singular.
+    pub fn solve<T: Scalar>(&self, matrix: &Mat<T>, right: &[T]) -> Option<Vec<T>> {
         let n = self.rows.len();
         let mut part = Mat::zeros(n, n);
         for (j, &column) in self.columns.iter().enumerate() {
@@ -53,9 +53,10 @@ impl EvenPart {
         }
         let right: Vec<T> = self.rows.iter().map(|&row| right[row]).collect();
         let mut solution = vec![T::zero_impl(); matrix.ncols()];
-        for (&column, value) in self.columns.iter().zip(Factorised::new(part).solve(&right)) {
+        let even = Factorised::new(part).solve_regular(&right)?;
+        for (&column, value) in self.columns.iter().zip(even) {
             solution[column] = value;
         }
-        solution
+        Some(solution)
     }
 }

@@ -84,7 +84,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
     }
 
     fn solve_as<T: Scalar>(&mut self, key: Key) -> Result<Mode> {
-        let (harmonic, order) = key;
+        let harmonic = key.0;
         let right = self.forcing(key);
         let k = harmonic as f64 * self.k;
         let shift = self.shift(key);
@@ -93,15 +93,23 @@ impl<'p, 'm> Expansion<'p, 'm> {
         system.resize(matrix.nrows(), T::zero_impl());
         let solution = match self.problem.even_part() {
             Some(even) if harmonic == 0 => even.solve(&matrix, &system),
-            _ => Factorised::new(matrix).solve(&system),
+            _ => Factorised::new(matrix).solve_regular(&system),
         };
-        if solution.iter().any(|v| !v.complex().norm().is_finite()) {
-            return Err(Error::computation(format!(
-                "the problem for X[{harmonic};{order}] is singular: a resonance at k = {}",
-                self.k
-            )));
-        }
+        let solution = solution.ok_or_else(|| self.singular(key))?;
         Ok(self.mode(key, &solution))
+    }
+
+    fn singular(&self, (harmonic, order): Key) -> Error {
+        let advice = if harmonic == 0 {
+            "a mean is left open: the block `mean` accepts `gauge` for a field that is determined up \
+             to a constant and `conserved` for an integral that does not change"
+                .to_owned()
+        } else {
+            format!("a resonance at k = {}: try a wavenumber beside it", self.k)
+        };
+        Error::computation(format!(
+            "the problem for X[{harmonic};{order}] is singular, {advice}"
+        ))
     }
 
     /// X[1;3] and c2 together: the bordered problem, closed by ⟨left vector, M0 X[1;3]⟩ = 0.
@@ -140,12 +148,9 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let bordered = crate::dense::bordered(&matrix, &[border]);
         let mut system: Vec<T> = right.iter().map(|&v| T::from_complex(v)).collect();
         system.push(T::from_complex(C64::new(0.0, 0.0)));
-        let solution = Factorised::new(bordered).solve(&system);
-        if solution.iter().any(|v| !v.complex().norm().is_finite()) {
-            return Err(Error::computation(
-                "the bordered problem for c2 is singular",
-            ));
-        }
+        let solution = Factorised::new(bordered).solve_regular(&system);
+        let solution = solution
+            .ok_or_else(|| Error::computation("the bordered problem for c2 is singular"))?;
         Ok((self.mode(key, &solution[..n]), solution[n].complex()))
     }
 

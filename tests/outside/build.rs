@@ -1,0 +1,3 @@
+fn main() {
+    landau_codegen::build::run();
+}

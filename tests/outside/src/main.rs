@@ -1,0 +1,45 @@
+//! The Landau coefficient over a range of r, by calls of the library rather than of the command line.
+
+use landau_solver::collocation::Discretisation;
+use landau_solver::error::Result;
+use landau_solver::problem::Problem;
+use landau_solver::study::Setup;
+use landau_solver::weakly::{Selection, point};
+
+include!(concat!(env!("OUT_DIR"), "/models.rs"));
+
+/// c0 and c2 at wavenumber 1, where X[2;2] = −i/(9 + r) by hand, and so c2 = −1/(9 + r).
+fn coefficients(r: f64) -> Result<(f64, f64)> {
+    let models = models();
+    let mut setup = Setup::new(models[0].as_ref(), 1);
+    setup
+        .parameters
+        .set_text(setup.model.structure(), "r", &r.to_string())?;
+    let base = setup.base(None)?;
+    let discretisation = Discretisation::new();
+    let problem = Problem::new(setup.model, &base, &discretisation, 0)?;
+    let found = point(&problem, 1.0, Selection::Leading)?;
+    Ok((found.c0.re, found.c2.re))
+}
+
+fn main() -> Result<()> {
+    println!("{:>6} {:>12} {:>14}", "r", "c0", "c2");
+    for step in 0..=5 {
+        let r = 0.1 * f64::from(step);
+        let (c0, c2) = coefficients(r)?;
+        println!("{r:>6.2} {c0:>12.8} {c2:>14.10}");
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn coefficients_by_hand() {
+        for r in [0.0, 0.1, 0.5] {
+            let (c0, c2) = super::coefficients(r).expect("a Landau point");
+            assert!((c0 - r).abs() < 1e-14, "{c0}");
+            assert!((c2 + 1.0 / (9.0 + r)).abs() < 1e-14, "{c2}");
+        }
+    }
+}
