@@ -26,8 +26,10 @@
 pub mod base;
 pub mod cli;
 pub mod collocation;
+pub mod data;
 pub mod dense;
 pub mod error;
+pub mod figure;
 pub mod model;
 pub mod parameters;
 pub mod problem;

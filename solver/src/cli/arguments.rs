@@ -96,6 +96,18 @@ pub enum Command {
         #[command(flatten)]
         common: Common,
     },
+    /// The fields over the (x, y)-plane, as pictures and as data.
+    #[command(
+        after_help = "Examples:\n  landau pattern my.model --k 0.16 --out pattern.svg --out pattern.npz\n  landau pattern my.model --k 0.16 --amplitude 0.1 --shade T --arrows u,v --out pattern.vtk"
+    )]
+    Pattern {
+        /// A built model, or the path of a .model file.
+        model: String,
+        #[command(flatten)]
+        options: PatternOptions,
+        #[command(flatten)]
+        common: Common,
+    },
     /// Print the certificate of a model; fails when it does not hold.
     #[command(after_help = "Example: landau verify my.model --k 0.16")]
     Verify {
@@ -160,6 +172,31 @@ pub struct SweepOptions {
     /// A picture of growth rate, c2 and amplitude over the first axis.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct PatternOptions {
+    /// Wavenumber.
+    #[arg(long, allow_negative_numbers = true)]
+    pub k: f64,
+    /// A; the equilibrium amplitude by default.
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    pub amplitude: Option<f64>,
+    /// Wavelengths along x.
+    #[arg(long, default_value_t = 2.0)]
+    pub wavelengths: f64,
+    /// Points along x and y.
+    #[arg(long, value_name = "NXxNY", default_value = "161x81")]
+    pub points: String,
+    /// The field that is shaded; the first by default.
+    #[arg(long, value_name = "FIELD")]
+    pub shade: Option<String>,
+    /// The fields that are drawn as arrows; u with v or w by default.
+    #[arg(long, value_name = "FIELD,FIELD")]
+    pub arrows: Option<String>,
+    /// Where it goes (repeatable): .svg is a picture, .npz, .nc and .vtk are data.
+    #[arg(long, value_name = "FILE", required = true)]
+    pub out: Vec<PathBuf>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

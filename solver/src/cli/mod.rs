@@ -12,6 +12,7 @@ macro_rules! say {
 
 mod arguments;
 mod inspect;
+mod pattern;
 mod picture;
 mod report;
 mod solve;
@@ -90,6 +91,13 @@ fn dispatch(models: &[Box<dyn Model>], command: Command) -> Result<()> {
             common,
         } => with_setup(models, &model, &common, |setup| {
             solve::sweep(setup, &options, &common)
+        }),
+        Command::Pattern {
+            model,
+            options,
+            common,
+        } => with_setup(models, &model, &common, |setup| {
+            pattern::pattern(setup, &options, &common)
         }),
         Command::Verify { model, k, common } => with_setup(models, &model, &common, |setup| {
             solve::verify(setup, k, &common)

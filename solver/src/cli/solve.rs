@@ -19,7 +19,7 @@ use serde_json::{Map, Value, json};
 /// Coefficients whose error is a larger fraction than this are called unconverged.
 const UNCONVERGED: f64 = 0.05;
 
-fn selection(common: &Common) -> Selection<'static> {
+pub fn selection(common: &Common) -> Selection<'static> {
     common.near.map_or(Selection::Leading, Selection::Near)
 }
 
@@ -404,8 +404,10 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
         k: options.k,
     };
     let rows = sweep.run_to(&options.out, &progress("sweeping"))?;
-    if let Some(path) = &options.plot {
-        write_whole(path, picture::sweep(setup, &sweep, &rows).as_bytes())?;
+    if let Some(path) = &options.plot
+        && let Some(drawn) = picture::sweep(setup, &sweep, &rows)
+    {
+        write_whole(path, drawn.as_bytes())?;
     }
     let good = rows.iter().filter(|r| r.status == "ok").count();
     let unstable = rows

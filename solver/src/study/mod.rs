@@ -69,6 +69,17 @@ impl<'m> Setup<'m> {
         }
     }
 
+    /// The sources of the model, spec and laws, as a short number.
+    pub fn hash(&self) -> String {
+        let sources = self.model.sources();
+        let text = sources.iter().flat_map(|(_, text)| text.bytes());
+        // FNV-1a, enough to tell one spec from another.
+        let hash = text.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+        format!("{hash:016x}")
+    }
+
     /// The resolution to collocate with: 0 without a cross-stream coordinate.
     pub fn effective_resolution(&self) -> usize {
         if self.model.structure().coordinate.is_some() {

@@ -6,6 +6,7 @@
 
 use super::{Axis, Carried, Setup};
 use crate::error::{Error, Result};
+use crate::figure::bulk;
 use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum::EigenPair;
@@ -40,6 +41,33 @@ pub struct Row {
     pub bifurcation: String,
     /// `ok`, or why there is no number.
     pub status: String,
+}
+
+/// A column of the table that can be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Column {
+    A0,
+    A2,
+    /// A_e of an unstable mode.
+    Amplitude,
+}
+
+/// One column over the first axis; NaN where there is no value, or at the pole of a column with poles.
+pub fn column(rows: &[Row], column: Column) -> Vec<(f64, f64)> {
+    let value = |row: &Row| match column {
+        Column::A0 => row.c0.map(|c| c[0]),
+        Column::A2 => row.c2.map(|c| c[0]),
+        Column::Amplitude => row.amplitude.filter(|_| row.c0.is_some_and(|c| c[0] > 0.0)),
+    };
+    let values: Vec<f64> = rows.iter().map(|r| value(r).unwrap_or(f64::NAN)).collect();
+    let most = match column {
+        Column::A0 => f64::INFINITY,
+        _ => bulk(values.iter().copied()),
+    };
+    let kept = |v: f64| if v.abs() <= most { v } else { f64::NAN };
+    let places = rows.iter().map(|r| r.coordinates[0]);
+    places.zip(values.into_iter().map(kept)).collect()
 }
 
 #[derive(Serialize, Deserialize)]
@@ -255,10 +283,8 @@ impl Sweep<'_, '_> {
     /// What a journal must have been made for.
     fn fingerprint(&self) -> String {
         let structure = self.setup.model.structure();
-        let sources = self.setup.model.sources();
-        let text: Vec<&str> = sources.iter().map(|(_, text)| text.as_str()).collect();
         format!(
-            "{} {:?} {:?} M={} k={:?} near={:?} {:?} v{} {:x}",
+            "{} {:?} {:?} M={} k={:?} near={:?} {:?} v{} {}",
             structure.name,
             self.setup.parameters.values,
             self.setup.parameters.automatic,
@@ -267,7 +293,7 @@ impl Sweep<'_, '_> {
             self.near,
             self.ranges,
             env!("CARGO_PKG_VERSION"),
-            checksum(&text.concat())
+            self.setup.hash()
         )
     }
 }
@@ -317,13 +343,6 @@ fn failed(coordinates: Vec<f64>, error: &Error) -> Row {
         bifurcation: String::new(),
         status: error.to_string(),
     }
-}
-
-/// FNV-1a, enough to tell one spec from another.
-fn checksum(text: &str) -> u64 {
-    text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
 }
 
 /// Finished chunks beside the output, one JSON object a line.
