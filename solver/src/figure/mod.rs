@@ -1,5 +1,6 @@
 //! Pictures as SVG. The plotting library is used nowhere else.
 
+mod compact;
 mod curves;
 mod plane;
 
@@ -13,26 +14,5 @@ const COLOURS: [&str; 7] = [
 
 fn svg(figure: kuva::prelude::Figure) -> String {
     let drawn = kuva::backend::svg::SvgBackend::default().render_scene(&figure.render());
-    shorten_paths(&drawn)
-}
-
-/// Coordinates of paths to a tenth of a pixel: shadings are a fifth of the size.
-fn shorten_paths(svg: &str) -> String {
-    let mut short = String::with_capacity(svg.len() / 2);
-    let mut rest = svg;
-    while let Some(start) = rest.find(" d=\"") {
-        let (before, path) = rest.split_at(start + 4);
-        let end = path.find('"').unwrap_or(path.len());
-        short.push_str(before);
-        for part in path[..end].split_inclusive(|c: char| !c.is_ascii_digit() && c != '.') {
-            let digits = part.find(|c: char| !c.is_ascii_digit() && c != '.');
-            let (number, separator) = part.split_at(digits.unwrap_or(part.len()));
-            let point = number.find('.').unwrap_or(number.len());
-            short.push_str(&number[..number.len().min(point + 2)]);
-            short.push_str(separator);
-        }
-        rest = &path[end..];
-    }
-    short.push_str(rest);
-    short
+    compact::paths(&drawn)
 }
