@@ -108,6 +108,20 @@ pub enum Command {
         #[command(flatten)]
         common: Common,
     },
+    /// Work through a study file: figures, numbers beside the printed ones, a report in HTML.
+    #[command(
+        after_help = "Examples:\n  landau reproduce --out report\n  landau reproduce my/studies/mine.toml --out report\n\nWithout a file, the only one in a folder `studies` here or one level below is taken.\nAn interrupted run goes on with the figure where it was."
+    )]
+    Reproduce {
+        /// A study file.
+        study: Option<PathBuf>,
+        /// The folder of the report.
+        #[arg(long, default_value = "report")]
+        out: PathBuf,
+        /// Print one JSON object alone on standard output.
+        #[arg(long)]
+        json: bool,
+    },
     /// Print the certificate of a model; fails when it does not hold.
     #[command(after_help = "Example: landau verify my.model --k 0.16")]
     Verify {

@@ -1,11 +1,11 @@
 //! The command `pattern`: pictures and data of the fields over the plane.
 
 use super::arguments::{Common, PatternOptions};
-use super::report;
 use super::solve::selection;
-use crate::data::{Array, Dataset, FORMATS};
+use crate::data::FORMATS;
+use crate::data::plane::{attributes, dataset};
 use crate::error::{Error, Result};
-use crate::figure::{Plane, planes};
+use crate::figure::pattern_pair;
 use crate::study::sweep::write_whole;
 use crate::study::{Setup, check_wavenumber};
 use crate::weakly::{Pattern, Window, pattern as expand};
@@ -103,64 +103,6 @@ fn window(options: &PatternOptions) -> Result<Window> {
     })
 }
 
-/// What the numbers were computed from.
-pub fn attributes(
-    setup: &Setup,
-    parameters: &crate::parameters::Parameters,
-    k: f64,
-    amplitude: f64,
-) -> Vec<(String, String)> {
-    let structure = setup.model.structure();
-    let mut list = vec![
-        ("title".to_owned(), structure.title.clone()),
-        ("model".to_owned(), structure.name.clone()),
-        ("model_hash".to_owned(), setup.hash()),
-    ];
-    let values = report::parameters(setup, parameters);
-    list.push(("parameters".to_owned(), values.to_string()));
-    list.push(("k".to_owned(), k.to_string()));
-    list.push(("amplitude".to_owned(), amplitude.to_string()));
-    list.push(("resolution".to_owned(), setup.resolution.to_string()));
-    let normalisation = structure.amplitude.description.clone();
-    list.push(("normalization".to_owned(), normalisation));
-    let version = env!("CARGO_PKG_VERSION").to_owned();
-    list.push(("landau_version".to_owned(), version));
-    list
-}
-
-/// X⁰, P (4.5) and P (4.4) of every field over (y, x).
-pub fn dataset(setup: &Setup, found: &Pattern, attributes: Vec<(String, String)>) -> Dataset {
-    let structure = setup.model.structure();
-    let vertical = structure.coordinate.as_deref().unwrap_or("y");
-    let mut arrays = Vec::new();
-    for (field, name) in found.names.iter().enumerate() {
-        let flat = |values: &[Vec<f64>]| values.iter().flatten().copied().collect();
-        for (kind, values) in [
-            ("linear", flat(&found.linear[field])),
-            ("nonlinear", flat(&found.nonlinear[field])),
-        ] {
-            arrays.push(Array {
-                name: format!("{name}_{kind}"),
-                axes: vec![0, 1],
-                values,
-            });
-        }
-        arrays.push(Array {
-            name: format!("{name}_base"),
-            axes: vec![0],
-            values: found.base[field].clone(),
-        });
-    }
-    Dataset {
-        attributes,
-        axes: vec![
-            (vertical.to_owned(), found.y.clone()),
-            (structure.periodic.clone(), found.x.clone()),
-        ],
-        arrays,
-    }
-}
-
 fn picture(setup: &Setup, options: &PatternOptions, found: &Pattern) -> Result<String> {
     let field = |name: &str| {
         found.field(name).ok_or_else(|| {
@@ -185,45 +127,11 @@ fn picture(setup: &Setup, options: &PatternOptions, found: &Pattern) -> Result<S
         }
         None => velocity(found),
     };
-    Ok(draw(setup, found, shade, arrows))
+    Ok(pattern_pair(setup.model.structure(), found, shade, arrows))
 }
 
 /// The fields that are a velocity by their customary names.
-pub fn velocity(found: &Pattern) -> Option<[usize; 2]> {
+fn velocity(found: &Pattern) -> Option<[usize; 2]> {
     let across = found.field("v").or_else(|| found.field("w"))?;
     Some([found.field("u")?, across])
-}
-
-/// Linear beside nonlinear.
-pub fn draw(setup: &Setup, found: &Pattern, shade: usize, arrows: Option<[usize; 2]>) -> String {
-    let structure = setup.model.structure();
-    let vertical = structure.coordinate.clone().unwrap_or_default();
-    let labels = [structure.periodic.clone(), vertical];
-    let panel = |title, fields| one(found, title, fields, shade, arrows, labels.clone());
-    let title = format!("{}, A = {:.4}", structure.title, found.amplitude);
-    planes(
-        &title,
-        &[
-            panel("fundamental alone", &found.linear),
-            panel("through third order", &found.nonlinear),
-        ],
-    )
-}
-
-fn one<'a>(
-    found: &'a Pattern,
-    title: &str,
-    fields: &'a [Vec<Vec<f64>>],
-    shade: usize,
-    arrows: Option<[usize; 2]>,
-    labels: [String; 2],
-) -> Plane<'a> {
-    Plane {
-        title: title.to_owned(),
-        labels,
-        x: &found.x,
-        y: &found.y,
-        shade: (&found.names[shade], &fields[shade]),
-        arrows: arrows.map(|pair| pair.map(|f| fields[f].as_slice())),
-    }
 }

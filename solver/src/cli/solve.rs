@@ -23,7 +23,7 @@ pub fn selection(common: &Common) -> Selection<'static> {
     common.near.map_or(Selection::Leading, Selection::Near)
 }
 
-fn progress(what: &str) -> ProgressBar {
+pub fn progress(what: &str) -> ProgressBar {
     let bar = ProgressBar::new(0);
     let style = ProgressStyle::with_template("{prefix} [{bar:40}] {pos}/{len} {eta}");
     bar.set_style(

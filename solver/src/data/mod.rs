@@ -2,6 +2,7 @@
 
 mod netcdf;
 mod npz;
+pub mod plane;
 mod vtk;
 
 use crate::error::{Error, Result};

@@ -2,9 +2,11 @@
 
 mod compact;
 mod curves;
+mod pattern;
 mod plane;
 
 pub use curves::{Curve, Panel, Style, bulk, panels};
+pub use pattern::pattern_pair;
 pub use plane::{Plane, planes};
 
 /// Colours that remain apart for colour-blind readers (Okabe & Ito), the darkest first.

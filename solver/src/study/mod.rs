@@ -69,6 +69,21 @@ impl<'m> Setup<'m> {
         }
     }
 
+    /// Sets parameters from `NAME=VALUE`.
+    ///
+    /// # Errors
+    /// What is no assignment, a parameter that the model does not have, a value out of range.
+    pub fn set(&mut self, assignments: &[String]) -> Result<()> {
+        for assignment in assignments {
+            let (name, value) = assignment.split_once('=').ok_or_else(|| {
+                Error::input(format!("--set {assignment}: --set accepts NAME=VALUE"))
+            })?;
+            self.parameters
+                .set_text(self.model.structure(), name.trim(), value.trim())?;
+        }
+        Ok(())
+    }
+
     /// The sources of the model, spec and laws, as a short number.
     pub fn hash(&self) -> String {
         let sources = self.model.sources();

@@ -1,0 +1,153 @@
+//! The report: one HTML page that opens from disk, pictures and data beside it.
+
+use super::Workshop;
+use super::outcome::{Number, Outcome};
+use crate::error::{Error, Result};
+use crate::study::sweep::write_whole;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use pulldown_latex::config::DisplayMode;
+use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
+
+/// Sections of derived operators: a title, then rows of LaTeX.
+pub struct Formulas {
+    pub sections: Vec<(String, Vec<String>)>,
+}
+
+const STYLE: &str = "
+body { font: 16px/1.5 Georgia, 'DejaVu Serif', serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #1a1a1a }
+h1, h2, h3 { line-height: 1.2 } h2 { margin-top: 3rem; border-top: 1px solid #ccc; padding-top: 1rem }
+nav { columns: 2; font-size: 0.9rem } figure { margin: 1.5rem 0; overflow-x: auto } img { max-width: 100% }
+figcaption { font-size: 0.9rem; color: #444 } table { border-collapse: collapse; font-size: 0.9rem }
+th, td { padding: 0.2rem 0.8rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
+td.number { font-variant-numeric: tabular-nums; text-align: right } .failure { color: #a33 }
+.formula { overflow-x: auto; padding: 0.3rem 0 }";
+
+pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) -> Result<()> {
+    let study = shop.study;
+    let mut sections = Vec::new();
+    for (figure, outcome) in study.figure.iter().zip(outcomes) {
+        let mut pictures = Vec::new();
+        for (index, picture) in outcome.pictures.iter().enumerate() {
+            let stem = format!("figure{}-{}", figure.id, index + 1);
+            let svg = format!("{stem}.svg");
+            write_whole(&shop.out.join(&svg), picture.svg.as_bytes())?;
+            let mut files = picture.files.clone();
+            if let Some(table) = &picture.table {
+                let csv = format!("{stem}.csv");
+                write_whole(&shop.out.join(&csv), table.csv().as_bytes())?;
+                files.push(csv);
+            }
+            let alt = format!("Figure {}: {} {}", figure.id, figure.title, picture.caption);
+            pictures.push(html! {
+                figure {
+                    img src=(svg) alt=(alt);
+                    figcaption {
+                        (picture.caption) " Data: "
+                        @for file in &files { a href=(file) { (file) } " " }
+                    }
+                }
+            });
+        }
+        sections.push(html! {
+            section id=(format!("figure-{}", figure.id)) {
+                h2 { "Figure " (figure.id) ". " (figure.title) }
+                p { (figure.text) }
+                @for picture in &pictures { (picture) }
+                @if !outcome.numbers.is_empty() { (numbers(&outcome.numbers)) }
+                @for failure in &outcome.failures { p.failure { "Did not come out: " (failure) } }
+            }
+        });
+    }
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (study.title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { (study.title) }
+                p { (study.introduction) }
+                p { "Reproduced: " (study.source) ". Computed with Landau " (env!("CARGO_PKG_VERSION"))
+                    ", M = " (study.resolution) " unless a figure says otherwise. All numbers: "
+                    a href="numbers.json" { "numbers.json" } "." }
+                nav {
+                    @for figure in &study.figure {
+                        div { a href=(format!("#figure-{}", figure.id)) { "Figure " (figure.id) } " " (figure.title) }
+                    }
+                    @if !formulas.sections.is_empty() { div { a href="#formulas" { "The derived operators" } } }
+                }
+                @for section in &sections { (section) }
+                @if !formulas.sections.is_empty() { (operators(formulas)?) }
+            }
+        }
+    };
+    let path = shop.out.join("index.html");
+    write_whole(&path, page.into_string().as_bytes())
+}
+
+fn numbers(list: &[Number]) -> Markup {
+    let shown = |value: Option<f64>| value.map_or("–".to_owned(), digits);
+    let difference = |n: &Number| match (n.ours, n.printed) {
+        (Some(ours), Some(printed)) => format!("{:+.1e}", ours - printed),
+        _ => String::new(),
+    };
+    html! {
+        table {
+            thead { tr { th { "Quantity" } th { "Ours" } th { "Printed" } th { "Difference" } th { "Note" } } }
+            tbody {
+                @for n in list {
+                    tr {
+                        td { (n.quantity) } td.number { (shown(n.ours)) } td.number { (shown(n.printed)) }
+                        td.number { (difference(n)) } td { (n.note) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Six significant digits.
+fn digits(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
+        format!("{value:.5e}")
+    } else {
+        let whole = value.abs().max(1e-3).log10().floor() as i32;
+        format!("{value:.*}", (5 - whole).clamp(0, 8) as usize)
+    }
+}
+
+fn operators(formulas: &Formulas) -> Result<Markup> {
+    let mut sections = Vec::new();
+    for (title, rows) in &formulas.sections {
+        let mut set = Vec::new();
+        for row in rows {
+            set.push(mathml(row)?);
+        }
+        sections.push((title, set));
+    }
+    Ok(html! {
+        section id="formulas" {
+            h2 { "The derived operators" }
+            @for (title, rows) in &sections {
+                h3 { (title) }
+                @for row in rows { div.formula { (PreEscaped(row)) } }
+            }
+        }
+    })
+}
+
+fn mathml(latex: &str) -> Result<String> {
+    let storage = Storage::new();
+    let parser = Parser::new(latex, &storage);
+    let config = RenderConfig {
+        display_mode: DisplayMode::Block,
+        ..RenderConfig::default()
+    };
+    let mut text = String::new();
+    push_mathml(&mut text, parser, config)
+        .map_err(|e| Error::computation(format!("a formula cannot be typeset: {e}: {latex}")))?;
+    Ok(text)
+}

@@ -1,0 +1,240 @@
+//! Fields over the plane: patterns, circulation around a vortex.
+
+use super::super::Workshop;
+use super::super::outcome::{Number, Outcome, Picture, Table};
+use super::super::study::{Axis, Case};
+use super::curves::{named, picture};
+use super::each;
+use crate::data::plane::{attributes, dataset};
+use crate::error::{Error, Result};
+use crate::figure::{Panel, Style, pattern_pair};
+use crate::study::{self, Setup};
+use crate::weakly::{Pattern, Selection, Window, pattern as expand};
+
+/// Points along x and y of pictures, and of the field that a vortex is measured in.
+const DRAWN: [usize; 2] = [161, 81];
+const MEASURED: [usize; 2] = [401, 401];
+
+/// The pattern at the equilibrium amplitude.
+fn at_equilibrium(setup: &Setup, k: f64, points: [usize; 2], wavelengths: f64) -> Result<Pattern> {
+    let base = setup.base(None)?;
+    setup.with_point(&base, k, Selection::Leading, |point| {
+        let missing = || Error::computation("there is no equilibrium amplitude at cubic order");
+        let amplitude = point.amplitude().ok_or_else(missing)?;
+        let [columns, rows] = points;
+        let window = Window {
+            columns,
+            rows,
+            wavelengths,
+        };
+        expand(point, amplitude, window)
+    })
+}
+
+fn field(found: &Pattern, name: &str) -> Result<usize> {
+    let missing = || Error::input(format!("the model has no profile `{name}`"));
+    found.field(name).ok_or_else(missing)
+}
+
+pub(super) fn pattern(
+    shop: &Workshop,
+    figure: &str,
+    cases: &[Case],
+    shade: &str,
+    arrows: Option<&[String; 2]>,
+    wavelengths: f64,
+) -> Result<Outcome> {
+    let mut outcome = Outcome::default();
+    let found = each(cases, &mut outcome.failures, |case| {
+        let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
+        let k = case.k.ok_or_else(missing)?;
+        shop.with_setup(case, |setup| {
+            let found = at_equilibrium(setup, k, DRAWN, wavelengths)?;
+            let shade = field(&found, shade)?;
+            let arrows = arrows
+                .map(|[u, v]| Ok::<_, Error>([field(&found, u)?, field(&found, v)?]))
+                .transpose()?;
+            let svg = pattern_pair(setup.model.structure(), &found, shade, arrows);
+            let parameters = &setup.base(None)?.parameters;
+            let facts = attributes(setup, parameters, k, found.amplitude);
+            let data = dataset(setup, &found, facts);
+            Ok((svg, found.amplitude, data))
+        })
+    })?;
+    for (index, (svg, amplitude, data)) in found {
+        let case = &cases[index];
+        let mut files = Vec::new();
+        for extension in ["npz", "nc"] {
+            let name = format!("figure{figure}-{}.{extension}", index + 1);
+            data.write(&shop.out.join(&name))?;
+            files.push(name);
+        }
+        outcome.pictures.push(Picture {
+            caption: case.label.clone(),
+            svg,
+            table: None,
+            files,
+        });
+        outcome.numbers.push(Number {
+            figure: figure.to_owned(),
+            quantity: named(case, "A_e"),
+            ours: Some(amplitude),
+            printed: case.printed.get("A_e").copied(),
+            note: case.note.clone(),
+        });
+    }
+    Ok(outcome)
+}
+
+/// What is measured of a vortex.
+struct Vortex {
+    circulation: f64,
+    centre: f64,
+    densest: f64,
+}
+
+#[allow(clippy::too_many_arguments)]
+pub(super) fn circulation(
+    shop: &Workshop,
+    figure: &str,
+    cases: &[Case],
+    over: &Axis,
+    k: f64,
+    arrows: &[String; 2],
+    side: f64,
+    shade: &str,
+) -> Result<Outcome> {
+    let mut outcome = Outcome::default();
+    let moved: Vec<Case> = cases
+        .iter()
+        .flat_map(|case| {
+            over.values().into_iter().map(|value| {
+                let mut moved = case.clone();
+                moved.label = named(case, &format!("{} = {value}", over.name));
+                moved.set.push(format!("{}={value}", over.name));
+                moved
+            })
+        })
+        .collect();
+    let found = each(&moved, &mut outcome.failures, |case| {
+        shop.with_setup(case, |setup| {
+            study::check_wavenumber(k)?;
+            let found = at_equilibrium(setup, k, MEASURED, 1.0)?;
+            let [u, v] = [field(&found, &arrows[0])?, field(&found, &arrows[1])?];
+            let length = side * 2.0 * std::f64::consts::PI / k;
+            vortex(&found, [u, v], field(&found, shade)?, length)
+        })
+    })?;
+    let mut strength = Panel::new("circulation", &over.name, "C");
+    let mut height = Panel::new("height", &over.name, "y");
+    let mut table = Table::new(&[
+        &over.name,
+        "circulation",
+        "vortex centre",
+        "largest density",
+    ]);
+    let values = over.values();
+    for (index, vortex) in &found {
+        let Vortex {
+            circulation,
+            centre,
+            densest,
+        } = vortex;
+        let place = values[index % values.len()];
+        table
+            .rows
+            .push(vec![place, *circulation, *centre, *densest]);
+    }
+    let of = |column: usize| -> Vec<(f64, f64)> {
+        table.rows.iter().map(|row| (row[0], row[column])).collect()
+    };
+    strength.curve("", Style::Line, of(1));
+    height.curve("vortex centre", Style::Line, of(2));
+    height.curve(&format!("largest {shade}"), Style::Dashed, of(3));
+    if let Some(best) = table.rows.iter().max_by(|a, b| a[1].total_cmp(&b[1])) {
+        for (quantity, ours) in [
+            ("largest circulation", best[1]),
+            ("where it is reached", best[0]),
+        ] {
+            outcome.numbers.push(Number {
+                figure: figure.to_owned(),
+                quantity: quantity.to_owned(),
+                ours: Some(ours),
+                printed: cases[0].printed.get(quantity).copied(),
+                note: cases[0].note.clone(),
+            });
+        }
+    }
+    picture(&mut outcome, "", &[strength, height], table);
+    Ok(outcome)
+}
+
+/// Circulation over a square around the strongest vortex of half a wavelength.
+fn vortex(found: &Pattern, [u, v]: [usize; 2], shade: usize, side: f64) -> Result<Vortex> {
+    let (x, y) = (&found.x, &found.y);
+    let (u, v) = (&found.nonlinear[u], &found.nonlinear[v]);
+    let corners =
+        |f: &[Vec<f64>], i: usize, j: usize| [f[j][i], f[j][i + 1], f[j + 1][i], f[j + 1][i + 1]];
+    let changes =
+        |values: [f64; 4]| values.iter().any(|v| *v > 0.0) && values.iter().any(|v| *v < 0.0);
+    let curl = |i: usize, j: usize| {
+        (v[j][i + 1] - v[j][i]) / (x[i + 1] - x[i]) - (u[j + 1][i] - u[j][i]) / (y[j + 1] - y[j])
+    };
+    let mut best: Option<(f64, [f64; 2])> = None;
+    for j in 1..y.len() - 2 {
+        for i in 1..x.len() / 2 {
+            if changes(corners(u, i, j)) && changes(corners(v, i, j)) {
+                let strength = curl(i, j).abs();
+                if best.is_none_or(|(most, _)| strength > most) {
+                    let middle = [0.5 * (x[i] + x[i + 1]), 0.5 * (y[j] + y[j + 1])];
+                    best = Some((strength, middle));
+                }
+            }
+        }
+    }
+    let missing = || Error::computation("no vortex centre was found");
+    let (_, [cx, cy]) = best.ok_or_else(missing)?;
+    // The square is cut at the walls.
+    let inside = |t: f64, values: &[f64]| t.clamp(values[0], values[values.len() - 1]);
+    let [left, right] = [cx - 0.5 * side, cx + 0.5 * side];
+    let [low, high] = [inside(cy - 0.5 * side, y), inside(cy + 0.5 * side, y)];
+    let sample = |f: &[Vec<f64>], px: f64, py: f64| bilinear(f, x, y, px, py);
+    let integral = |from: f64, to: f64, value: &dyn Fn(f64) -> f64| {
+        let steps = 400;
+        let step = (to - from) / f64::from(steps);
+        let sum: f64 = (0..steps)
+            .map(|i| value(from + (f64::from(i) + 0.5) * step))
+            .sum();
+        sum * step
+    };
+    let circulation = integral(left, right, &|t| sample(u, t, low))
+        + integral(low, high, &|t| sample(v, right, t))
+        - integral(left, right, &|t| sample(u, t, high))
+        - integral(low, high, &|t| sample(v, left, t));
+    let densest = found.nonlinear[shade]
+        .iter()
+        .map(|row| row.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+        .enumerate()
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map_or(0, |(j, _)| j);
+    Ok(Vortex {
+        circulation: circulation.abs(),
+        centre: cy,
+        densest: y[densest],
+    })
+}
+
+/// Interpolation on the uniform grid, periodic in x.
+fn bilinear(f: &[Vec<f64>], x: &[f64], y: &[f64], px: f64, py: f64) -> f64 {
+    let length = x[x.len() - 1] - x[0];
+    let place = |t: f64, values: &[f64]| {
+        let step = (values[values.len() - 1] - values[0]) / (values.len() - 1) as f64;
+        let position = ((t - values[0]) / step).clamp(0.0, (values.len() - 1) as f64);
+        let cell = (position.floor() as usize).min(values.len() - 2);
+        (cell, position - cell as f64)
+    };
+    let (i, a) = place(x[0] + (px - x[0]).rem_euclid(length), x);
+    let (j, b) = place(py, y);
+    let along = |row: &[f64]| row[i] * (1.0 - a) + row[i + 1] * a;
+    along(&f[j]) * (1.0 - b) + along(&f[j + 1]) * b
+}
