@@ -10,7 +10,7 @@ use super::wall::{
 };
 use super::{Deriver, pairing};
 use crate::diagnostic::{Diagnostic, Location};
-use crate::graph::{Graph, Id, Jet, Node, Printer};
+use crate::graph::{Graph, Id, Jet, Node, Plain, Printer};
 use crate::model::{Closure, Condition, End};
 
 /// A condition on the adjoint field: Σ symbol · jets = 0, `jet.field` being a balance.
@@ -323,6 +323,7 @@ fn describe_demand(
         laws: &[],
         coordinate: deriver.model.coordinate(),
         slots: &[],
+        notation: &Plain,
     };
     let place = deriver.model.interval.as_ref().map(|i| match end {
         End::Lower => i.lower,

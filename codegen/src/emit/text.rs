@@ -1,10 +1,9 @@
-//! The derived operators as text, in the notation of the literature.
+//! The derived operators as lines in the notation of the literature, as text or as LaTeX.
 
 use crate::derive::{AdjointCondition, CaseClosure, Derivation, Form, Term};
-use crate::graph::{Id, Jet, Printer};
+use crate::graph::{Id, Jet, Latex, Notation, Plain, Printer};
 use crate::model::End;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// What `explain` can print.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -23,9 +22,60 @@ pub fn sections(derivation: &Derivation) -> Vec<Section> {
     sections
 }
 
-/// Prints one section.
+/// What stands before a formula.
+enum Label {
+    None,
+    Name(String),
+    /// A place, which is a formula itself.
+    Place(String),
+    /// Row and column of a matrix.
+    Entry(String, String),
+}
+
+enum Line {
+    Heading(String),
+    /// The choices of the switches that the following lines hold for.
+    Case(String),
+    Words(String),
+    Formula(Label, String),
+}
+
+/// One section as text.
 pub fn print(derivation: &Derivation, section: Section) -> String {
-    let writer = Writer::new(derivation);
+    let lines = lines(&Writer::new(derivation, &Plain), section);
+    let text = lines.into_iter().map(|line| match line {
+        Line::Heading(words) => format!("{words}\n"),
+        Line::Case(words) => format!("  -- {words}\n"),
+        Line::Words(words) => format!("  {words}\n"),
+        Line::Formula(Label::None, formula) => format!("  {formula}\n"),
+        Line::Formula(Label::Name(name), formula) => format!("  {name}: {formula}\n"),
+        Line::Formula(Label::Place(place), formula) => format!("  at {place}: {formula}\n"),
+        Line::Formula(Label::Entry(row, column), formula) => {
+            format!("  [{row}, {column}] {formula}\n")
+        }
+    });
+    text.collect()
+}
+
+/// One section as LaTeX, a displayed formula an item; headings are formulas of text.
+pub fn latex(derivation: &Derivation, section: Section) -> Vec<String> {
+    let words = |text: &str| format!("\\text{{{}}}", text.replace('_', "\\_"));
+    let lines = lines(&Writer::new(derivation, &Latex), section);
+    let rows = lines.into_iter().map(|line| match line {
+        Line::Heading(text) | Line::Case(text) | Line::Words(text) => words(&text),
+        Line::Formula(Label::None, formula) => formula,
+        Line::Formula(Label::Name(name), formula) => format!("{}\\quad {formula}", words(&name)),
+        Line::Formula(Label::Place(place), formula) => {
+            format!("{place}{}\\quad {formula}", words(":"))
+        }
+        Line::Formula(Label::Entry(row, column), formula) => {
+            format!("[{},\\,{column}]\\quad {formula}", words(&row))
+        }
+    });
+    rows.collect()
+}
+
+fn lines(writer: &Writer, section: Section) -> Vec<Line> {
     match section {
         Section::Base => writer.base(),
         Section::Linear => writer.linear(),
@@ -36,11 +86,12 @@ pub fn print(derivation: &Derivation, section: Section) -> String {
 
 /// One row of N of some degree as a sum, for doc comments.
 pub fn nonlinear_row(derivation: &Derivation, degree: usize, row: usize) -> String {
-    Writer::new(derivation).form(&derivation.operators.nonlinear[degree - 2][row])
+    Writer::new(derivation, &Plain).form(&derivation.operators.nonlinear[degree - 2][row])
 }
 
 struct Writer<'a> {
     derivation: &'a Derivation,
+    notation: &'a dyn Notation,
     fields: Vec<String>,
     /// Adjoint fields by balance.
     adjoint_fields: Vec<String>,
@@ -49,7 +100,7 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(derivation: &'a Derivation) -> Self {
+    fn new(derivation: &'a Derivation, notation: &'a dyn Notation) -> Self {
         let model = &derivation.model;
         let fields = model.field_names();
         let adjoint_fields = derivation
@@ -60,6 +111,7 @@ impl<'a> Writer<'a> {
             .collect();
         Writer {
             derivation,
+            notation,
             fields,
             adjoint_fields,
             parameters: model.parameters.iter().map(|p| p.name.clone()).collect(),
@@ -75,6 +127,7 @@ impl<'a> Writer<'a> {
             laws: &self.laws,
             coordinate: self.derivation.model.coordinate(),
             slots: &[],
+            notation: self.notation,
         }
     }
 
@@ -90,33 +143,43 @@ impl<'a> Writer<'a> {
             } else {
                 interval.upper
             };
-            format!("at {} = {}", interval.name, self.print(id))
+            let name = self.notation.letter(&interval.name);
+            format!("{name} = {}", self.print(id))
         })
     }
 
     /// ∂x^a |∂x|^b ∂y^c ∂t^d
     fn operator(&self, jet: Jet) -> String {
         let model = &self.derivation.model;
-        let power = |name: &str, n: u8| match n {
-            0 => String::new(),
-            1 => format!(" {name}"),
-            2 => format!(" {name}²"),
-            3 => format!(" {name}³"),
-            4 => format!(" {name}⁴"),
-            n => format!(" {name}^{n}"),
-        };
-        let periodic = format!("∂{}", model.periodic);
-        let cross = format!("∂{}", model.coordinate());
-        power("∂t", jet.t)
-            + &power(&periodic, jet.x)
-            + &power(&format!("|{periodic}|"), jet.absx)
-            + &power(&cross, jet.y)
+        let notation = self.notation;
+        let mut parts = Vec::new();
+        for (coordinate, power) in [("t", jet.t), (model.periodic.as_str(), jet.x)] {
+            if power > 0 {
+                parts.push(notation.partial(coordinate, power));
+            }
+        }
+        if jet.absx > 0 {
+            parts.push(notation.absolute_partial(&model.periodic, jet.absx));
+        }
+        if jet.y > 0 {
+            parts.push(notation.partial(model.coordinate(), jet.y));
+        }
+        parts.join(" ")
+    }
+
+    fn name(&self, name: &str) -> String {
+        self.notation.symbol(name, "", &[])
+    }
+
+    /// formula = 0
+    fn vanishes(&self, label: Label, formula: &str) -> Line {
+        Line::Formula(label, format!("{formula} = 0"))
     }
 
     /// Entry by entry: the coefficient, then the operator.
     fn entries(
         &self,
-        text: &mut String,
+        lines: &mut Vec<Line>,
         terms: &[Term],
         rows: &[String],
         columns: &[String],
@@ -128,57 +191,51 @@ impl<'a> Writer<'a> {
         for term in sorted {
             let operator = self.operator(Jet { t: 0, ..term.jet });
             let block = blocks.entry((term.row, term.jet.field)).or_default();
-            block.push(match operator.trim() {
+            block.push(match operator.as_str() {
                 "" => self.print(term.coefficient),
                 operator => self.scaled(term.coefficient, operator),
             });
         }
         for ((row, column), parts) in blocks {
-            let _ = writeln!(
-                text,
-                "  [{}, {}] {}",
-                rows[row],
-                columns[usize::from(column)],
-                signed_sum(parts)
-            );
+            let column = self.name(&columns[usize::from(column)]);
+            let label = Label::Entry(rows[row].clone(), column);
+            lines.push(Line::Formula(label, signed_sum(parts)));
         }
     }
 
-    fn base(&self) -> String {
+    fn base(&self) -> Vec<Line> {
         let (model, operators) = (&self.derivation.model, &self.derivation.operators);
-        let mut text = String::from("Base state\n");
+        let mut lines = vec![Line::Heading("Base state".into())];
         for (field, closed) in model.base.closed.iter().enumerate() {
             if let Some(id) = closed {
-                let _ = writeln!(text, "  {}⁰ = {}", self.fields[field], self.print(*id));
+                let name = self.notation.symbol(&self.fields[field], "⁰", &[]);
+                let formula = format!("{name} = {}", self.print(*id));
+                lines.push(Line::Formula(Label::None, formula));
             }
         }
         for row in &operators.base {
-            let name = &model.balances[row.balance].name;
-            let _ = writeln!(text, "  {name}: {} = 0", self.print(row.residual));
+            let name = Label::Name(model.balances[row.balance].name.clone());
+            lines.push(self.vanishes(name, &self.print(row.residual)));
         }
         for (integrand, value) in &operators.base_integrals {
-            let (integrand, value) = (self.print(*integrand), self.print(*value));
-            let _ = writeln!(text, "  ∫ {integrand} d{} = {value}", model.coordinate());
+            let integral = self
+                .notation
+                .integral(&self.print(*integrand), model.coordinate());
+            let formula = format!("{integral} = {}", self.print(*value));
+            lines.push(Line::Formula(Label::None, formula));
         }
         for case in &operators.cases {
-            text += &self.case_title(&case.choices);
+            lines.extend(self.case(&case.choices));
             for condition in &case.base_conditions {
-                let _ = writeln!(
-                    text,
-                    "  {}: {} = 0",
-                    self.place(condition.end),
-                    self.print(condition.residual)
-                );
+                let place = Label::Place(self.place(condition.end));
+                lines.push(self.vanishes(place, &self.print(condition.residual)));
             }
         }
-        text
+        lines
     }
 
-    fn case_title(&self, choices: &[usize]) -> String {
+    fn case(&self, choices: &[usize]) -> Option<Line> {
         let (model, operators) = (&self.derivation.model, &self.derivation.operators);
-        if choices.is_empty() {
-            return String::new();
-        }
         let named: Vec<String> = operators
             .switches
             .iter()
@@ -188,60 +245,52 @@ impl<'a> Writer<'a> {
                 format!("{} = {}", parameter.name, parameter.choices[choice])
             })
             .collect();
-        format!("  -- {}\n", named.join(", "))
+        (!named.is_empty()).then(|| Line::Case(named.join(", ")))
     }
 
-    fn linear(&self) -> String {
+    fn linear(&self) -> Vec<Line> {
         let (model, operators) = (&self.derivation.model, &self.derivation.operators);
         let rows: Vec<String> = model.balances.iter().map(|b| b.name.clone()).collect();
-        let mut text = String::from("Mass matrix M0 [balance, field]\n");
-        self.entries(&mut text, &operators.linear, &rows, &self.fields, true);
-        text += "Linear operator L [balance, field]\n";
-        self.entries(&mut text, &operators.linear, &rows, &self.fields, false);
-        text += "Boundary conditions\n";
+        let mut lines = vec![Line::Heading("Mass matrix M0 [balance, field]".into())];
+        self.entries(&mut lines, &operators.linear, &rows, &self.fields, true);
+        lines.push(Line::Heading("Linear operator L [balance, field]".into()));
+        self.entries(&mut lines, &operators.linear, &rows, &self.fields, false);
+        lines.push(Line::Heading("Boundary conditions".into()));
         for case in &operators.cases {
-            text += &self.case_title(&case.choices);
+            lines.extend(self.case(&case.choices));
             for condition in &case.conditions {
-                let _ = writeln!(
-                    text,
-                    "  {}: {} = 0",
-                    self.place(condition.end),
-                    self.form(&condition.form)
-                );
+                let place = Label::Place(self.place(condition.end));
+                lines.push(self.vanishes(place, &self.form(&condition.form)));
             }
         }
-        text += "Closure at k = 0\n";
+        lines.push(Line::Heading("Closure at k = 0".into()));
         for case in &operators.cases {
-            text += &self.case_title(&case.choices);
-            for closure in &case.closures {
-                text += &self.closure(closure);
-            }
+            lines.extend(self.case(&case.choices));
+            lines.extend(case.closures.iter().map(|closure| self.closure(closure)));
         }
-        text += &self.parity();
-        text
+        lines.push(Line::Heading(self.parity()));
+        lines
     }
 
-    fn closure(&self, closure: &CaseClosure) -> String {
-        let density = |density: &[(Jet, Id)]| {
+    fn closure(&self, closure: &CaseClosure) -> Line {
+        let integral = |density: &[(Jet, Id)]| {
             let terms: Vec<String> = density
                 .iter()
                 .map(|(jet, weight)| self.scaled(*weight, &self.jet(*jet)))
                 .collect();
-            terms.join(" + ")
+            let variable = self.derivation.model.coordinate();
+            self.notation.integral(&terms.join(" + "), variable)
         };
         match closure {
-            CaseClosure::Conserved { density: d, .. } => {
-                format!("  conserved: ∫ {} = 0\n", density(d))
+            CaseClosure::Conserved { density, .. } => {
+                self.vanishes(Label::Name("conserved".into()), &integral(density))
             }
             CaseClosure::Gauge { field, .. } => {
-                format!("  gauge: the constant of {}\n", self.fields[*field])
+                Line::Words(format!("gauge: the constant of {}", self.fields[*field]))
             }
-            CaseClosure::Unknown { field, density: d } => {
-                format!(
-                    "  unknown {}, closed by ∫ {} = 0\n",
-                    self.fields[*field],
-                    density(d)
-                )
+            CaseClosure::Unknown { field, density } => {
+                let name = Label::Name(format!("unknown {}", self.fields[*field]));
+                self.vanishes(name, &integral(density))
             }
         }
     }
@@ -249,7 +298,7 @@ impl<'a> Writer<'a> {
     fn parity(&self) -> String {
         let (model, operators) = (&self.derivation.model, &self.derivation.operators);
         match &operators.parity {
-            None => format!("Symmetry: none under {0} → -{0}\n", model.periodic),
+            None => format!("Symmetry: none under {0} → -{0}", model.periodic),
             Some(parity) => {
                 let signs: Vec<String> = self
                     .fields
@@ -265,51 +314,35 @@ impl<'a> Writer<'a> {
                     .collect();
                 let (before, after) = (self.fields.join(", "), signs.join(", "));
                 format!(
-                    "Symmetry: {0} → -{0} with ({before}) → ({after})\n",
+                    "Symmetry: {0} → -{0} with ({before}) → ({after})",
                     model.periodic
                 )
             }
         }
     }
 
-    fn adjoint(&self) -> String {
+    fn adjoint(&self) -> Vec<Line> {
         let operators = &self.derivation.operators;
-        let mut text = String::from("Adjoint mass matrix M0† [field, balance's adjoint]\n");
-        self.entries(
-            &mut text,
-            &operators.adjoint,
-            &self.fields,
-            &self.adjoint_fields,
-            true,
-        );
-        text += "Adjoint operator L† [field, balance's adjoint]\n";
-        self.entries(
-            &mut text,
-            &operators.adjoint,
-            &self.fields,
-            &self.adjoint_fields,
-            false,
-        );
-        text += "Adjoint boundary conditions\n";
+        let (rows, columns) = (&self.fields, &self.adjoint_fields);
+        let title = |what: &str| Line::Heading(format!("{what} [field, balance's adjoint]"));
+        let mut lines = vec![title("Adjoint mass matrix M0†")];
+        self.entries(&mut lines, &operators.adjoint, rows, columns, true);
+        lines.push(title("Adjoint operator L†"));
+        self.entries(&mut lines, &operators.adjoint, rows, columns, false);
+        lines.push(Line::Heading("Adjoint boundary conditions".into()));
         for case in &operators.cases {
-            text += &self.case_title(&case.choices);
+            lines.extend(self.case(&case.choices));
             match &case.adjoint {
-                Err(reason) => {
-                    let _ = writeln!(text, "  {reason}");
-                }
+                Err(reason) => lines.push(Line::Words(reason.clone())),
                 Ok(conditions) => {
                     for condition in conditions {
-                        let _ = writeln!(
-                            text,
-                            "  {}: {} = 0",
-                            self.place(condition.end),
-                            self.adjoint_condition(condition)
-                        );
+                        let place = Label::Place(self.place(condition.end));
+                        lines.push(self.vanishes(place, &self.adjoint_condition(condition)));
                     }
                 }
             }
         }
-        text
+        lines
     }
 
     fn adjoint_condition(&self, condition: &AdjointCondition) -> String {
@@ -325,13 +358,14 @@ impl<'a> Writer<'a> {
         signed_sum(parts)
     }
 
-    fn nonlinear(&self, degree: usize) -> String {
+    fn nonlinear(&self, degree: usize) -> Vec<Line> {
         let (model, operators) = (&self.derivation.model, &self.derivation.operators);
-        let mut text = format!("N{degree}\n");
+        let mut lines = vec![Line::Heading(format!("N{degree}"))];
         for (row, form) in operators.nonlinear[degree - 2].iter().enumerate() {
-            let _ = writeln!(text, "  {}: {}", model.balances[row].name, self.form(form));
+            let name = Label::Name(model.balances[row].name.clone());
+            lines.push(Line::Formula(name, self.form(form)));
         }
-        text
+        lines
     }
 
     fn jet(&self, jet: Jet) -> String {

@@ -8,11 +8,13 @@
 mod algebra;
 mod calculus;
 mod node;
+mod notation;
 mod print;
 mod zero;
 
 pub use calculus::Variable;
 pub use node::{Function, Jet, LawAtom, Node, Operator, Rational};
+pub use notation::{Latex, Notation, Plain};
 pub use print::Printer;
 
 use std::collections::HashMap;

@@ -1,6 +1,6 @@
-//! Expressions as text, in the notation of the literature: n⁰_y, p⁰_nT, μ.
+//! Expressions in the notation of the literature: n⁰_y, p⁰_nT, μ.
 
-use super::{Graph, Id, Jet, LawAtom, Node, Rational};
+use super::{Graph, Id, Jet, LawAtom, Node, Notation, Rational};
 use num_traits::{One, Signed};
 
 /// Names for the atoms of a graph.
@@ -12,6 +12,7 @@ pub struct Printer<'a> {
     pub coordinate: &'a str,
     /// Names of the kernel arrays.
     pub slots: &'a [String],
+    pub notation: &'a dyn Notation,
 }
 
 /// How tightly a printed expression binds.
@@ -34,7 +35,10 @@ impl Printer<'_> {
             Node::Sum(constant, terms) if terms.len() == 1 && *constant == Rational::default() => {
                 self.print(id)
             }
-            Node::Number(value) if value.is_integer() => value.to_string(),
+            Node::Number(value) if value.is_integer() => {
+                let sign = if value.is_negative() { "-" } else { "" };
+                format!("{sign}{}", self.notation.number(&value.abs()))
+            }
             _ => self.at(id, Binding::Product),
         }
     }
@@ -42,42 +46,41 @@ impl Printer<'_> {
     fn at(&self, id: Id, context: Binding) -> String {
         let (text, binding) = self.text(id);
         if binding < context {
-            format!("({text})")
+            self.notation.brackets(&text)
         } else {
             text
         }
     }
 
     fn text(&self, id: Id) -> (String, Binding) {
+        let notation = self.notation;
         match self.graph.node(id) {
-            Node::Number(value) => number(value),
-            Node::Pi => ("π".into(), Binding::Power),
-            Node::Parameter(index) => (self.parameters[*index].clone(), Binding::Power),
-            Node::Wavenumber => ("k".into(), Binding::Power),
-            Node::Coordinate => (self.coordinate.into(), Binding::Power),
+            Node::Number(value) => self.number(value),
+            Node::Pi => (notation.letter("π"), Binding::Power),
+            Node::Parameter(index) => {
+                let name = notation.letter(&self.parameters[*index]);
+                (name, Binding::Power)
+            }
+            Node::Wavenumber => (notation.letter("k"), Binding::Power),
+            Node::Coordinate => (notation.letter(self.coordinate), Binding::Power),
             Node::Jet(jet) => (self.jet(*jet, ""), Binding::Power),
             Node::Base(field, order) => {
-                let marks = self.coordinate.repeat(usize::from(*order));
-                (
-                    subscripted(&format!("{}⁰", self.fields[*field]), &marks),
-                    Binding::Power,
-                )
+                let marks = vec![self.coordinate; usize::from(*order)];
+                let name = notation.symbol(&self.fields[*field], "⁰", &marks);
+                (name, Binding::Power)
             }
             Node::StateLaw(atom) => (self.law(atom, ""), Binding::Power),
             Node::BaseLaw(atom) => (self.law(atom, "⁰"), Binding::Power),
             Node::Sum(constant, terms) => (self.sum(constant, terms), Binding::Sum),
             Node::Product(factors) => (self.product(factors), Binding::Product),
-            Node::Call(function, argument) => (
-                format!("{}({})", function.name(), self.print(*argument)),
-                Binding::Power,
-            ),
+            Node::Call(function, argument) => {
+                let call = notation.call(function.name(), &self.print(*argument));
+                (call, Binding::Power)
+            }
             Node::Select(switch, branches) => {
                 let branches: Vec<_> = branches.iter().map(|&b| self.print(b)).collect();
-                let name = &self.parameters[*switch];
-                (
-                    format!("select({name}; {})", branches.join(", ")),
-                    Binding::Power,
-                )
+                let choice = notation.choice(&self.parameters[*switch], &branches);
+                (choice, Binding::Power)
             }
             Node::Derivative(operator, argument) => {
                 let name = match operator {
@@ -86,7 +89,7 @@ impl Printer<'_> {
                     super::Operator::Dt => "∂t",
                     super::Operator::AbsDx => "|∂x|",
                 };
-                (format!("{name}({})", self.print(*argument)), Binding::Power)
+                (notation.call(name, &self.print(*argument)), Binding::Power)
             }
             Node::Slot(array, position) => (
                 format!("{}[{position}]", self.slots[*array]),
@@ -97,20 +100,24 @@ impl Printer<'_> {
 
     /// A derivative of a field: `∂xy u'`, with `mark` after the name.
     pub fn jet(&self, jet: Jet, mark: &str) -> String {
-        let order = |letter: &str, n: u8| letter.repeat(usize::from(n));
-        let inner = order("t", jet.t) + &order("x", jet.x) + &order(self.coordinate, jet.y);
-        let outer = order("|∂x|", jet.absx);
-        let name = format!("{}{mark}", self.fields[usize::from(jet.field)]);
-        format!("{outer}{}", subscripted(&name, &inner))
+        let mut below = vec!["t"; usize::from(jet.t)];
+        below.extend(vec!["x"; usize::from(jet.x)]);
+        below.extend(vec![self.coordinate; usize::from(jet.y)]);
+        let name = &self.fields[usize::from(jet.field)];
+        let symbol = self.notation.symbol(name, mark, &below);
+        match jet.absx {
+            0 => symbol,
+            n => format!("{}{symbol}", self.notation.absolute_partial("x", n)),
+        }
     }
 
     fn law(&self, atom: &LawAtom, mark: &str) -> String {
-        let mut marks = String::new();
+        let mut marks: Vec<&str> = Vec::new();
         for (field, &order) in atom.index.iter().enumerate() {
-            marks += &self.fields[field].repeat(usize::from(order));
+            marks.extend(vec![self.fields[field].as_str(); usize::from(order)]);
         }
-        marks += &self.coordinate.repeat(usize::from(atom.y));
-        subscripted(&format!("{}{mark}", self.laws[atom.law]), &marks)
+        marks.extend(vec![self.coordinate; usize::from(atom.y)]);
+        self.notation.symbol(&self.laws[atom.law], mark, &marks)
     }
 
     fn sum(&self, constant: &Rational, terms: &[(Id, Rational)]) -> String {
@@ -130,7 +137,7 @@ impl Printer<'_> {
             push_signed(
                 &mut text,
                 constant.is_negative(),
-                &number(&constant.abs()).0,
+                &self.notation.number(&constant.abs()),
             );
         }
         text
@@ -141,15 +148,16 @@ impl Printer<'_> {
             return self.at(id, Binding::Product);
         }
         let (numerator, denominator) = (coefficient.numer(), coefficient.denom());
-        let mut text = if numerator.is_one() {
+        let text = if numerator.is_one() {
             self.at(id, Binding::Product)
         } else {
             format!("{numerator} {}", self.at(id, Binding::Product))
         };
-        if !denominator.is_one() {
-            text = format!("{text}/{denominator}");
+        if denominator.is_one() {
+            text
+        } else {
+            self.notation.fraction(&text, &[denominator.to_string()])
         }
-        text
     }
 
     fn product(&self, factors: &[(Id, Rational)]) -> String {
@@ -166,10 +174,9 @@ impl Printer<'_> {
         } else {
             above.join(" ")
         };
-        match below.len() {
-            0 => numerator,
-            1 => format!("{numerator}/{}", below[0]),
-            _ => format!("{numerator}/({})", below.join(" ")),
+        match below.as_slice() {
+            [] => numerator,
+            _ => self.notation.fraction(&numerator, &below),
         }
     }
 
@@ -177,23 +184,21 @@ impl Printer<'_> {
         if exponent.is_one() {
             return self.at(base, Binding::Power);
         }
+        let text = self.at(base, Binding::Power);
         if *exponent == Rational::new(1.into(), 2.into()) {
-            return format!("√{}", self.at(base, Binding::Power));
-        }
-        let base = self.at(base, Binding::Power);
-        if exponent.is_integer() {
-            format!("{base}^{exponent}")
+            self.notation.root(&text)
         } else {
-            format!("{base}^({exponent})")
+            self.notation.power(&text, exponent)
         }
     }
-}
 
-fn subscripted(name: &str, marks: &str) -> String {
-    if marks.is_empty() {
-        name.into()
-    } else {
-        format!("{name}_{marks}")
+    fn number(&self, value: &Rational) -> (String, Binding) {
+        let text = self.notation.number(&value.abs());
+        match (value.is_negative(), value.is_integer()) {
+            (true, _) => (format!("-{text}"), Binding::Sum),
+            (false, false) => (text, Binding::Product),
+            (false, true) => (text, Binding::Power),
+        }
     }
 }
 
@@ -205,13 +210,4 @@ fn push_signed(text: &mut String, negative: bool, term: &str) {
         (false, true) => text.push_str(" - "),
     }
     text.push_str(term);
-}
-
-fn number(value: &Rational) -> (String, Binding) {
-    let binding = match (value.is_negative(), value.is_integer()) {
-        (true, _) => Binding::Sum,
-        (false, false) => Binding::Product,
-        (false, true) => Binding::Power,
-    };
-    (value.to_string(), binding)
 }

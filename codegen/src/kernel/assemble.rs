@@ -3,7 +3,7 @@
 use super::polarise::{form_tables, polarise};
 use super::{Array, Kernel, Lowering};
 use crate::derive::{CaseClosure, Derivation, Opener, base_value};
-use crate::graph::{Graph, Id, Jet, Node, Printer, Variable};
+use crate::graph::{Graph, Id, Jet, Node, Plain, Printer, Variable};
 use crate::model::Amplitude;
 use crate::structure::*;
 use num_traits::One;
@@ -400,6 +400,7 @@ impl Assembler<'_> {
             laws: &[],
             coordinate,
             slots: &[],
+            notation: &Plain,
         };
         match &self.model.amplitude {
             Amplitude::Integral { weights, value } => {

@@ -24,7 +24,9 @@ pub enum Command {
     #[command(after_help = "Example: landau check my.model")]
     Check { file: PathBuf },
     /// Print the derived operators.
-    #[command(after_help = "Example: landau explain my.model --operator adjoint")]
+    #[command(
+        after_help = "Examples:\n  landau explain my.model --operator adjoint\n  landau explain my.model --format latex"
+    )]
     Explain {
         /// A built model, or the path of a .model file.
         model: String,
@@ -228,6 +230,7 @@ pub enum OperatorName {
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Format {
     Text,
+    Latex,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

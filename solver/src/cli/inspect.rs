@@ -3,8 +3,10 @@
 use super::arguments::{Format, OperatorName};
 use crate::error::{Error, Result};
 use crate::model::Model;
+use crate::reproduce::Formulas;
 use landau_codegen::Sources;
 use landau_codegen::build::read_sources;
+use landau_codegen::derive::Derivation;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::text::{self, Section};
 use landau_codegen::generate;
@@ -53,7 +55,32 @@ pub fn check(file: &Path) -> Result<()> {
 }
 
 pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format) -> Result<()> {
-    let Format::Text = format;
+    let derivation = derive(model)?;
+    let chosen = operator.map(|name| match name {
+        OperatorName::Base => Section::Base,
+        OperatorName::Linear => Section::Linear,
+        OperatorName::Adjoint => Section::Adjoint,
+        OperatorName::N2 => Section::Nonlinear(2),
+        OperatorName::N3 => Section::Nonlinear(3),
+    });
+    for section in text::sections(&derivation) {
+        if chosen.is_some_and(|c| c != section) {
+            continue;
+        }
+        match format {
+            Format::Text => say!("{}", text::print(&derivation, section)),
+            Format::Latex => {
+                for row in text::latex(&derivation, section) {
+                    say!("\\[ {row} \\]");
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The derivation of a model from the sources that it carries.
+fn derive(model: &dyn Model) -> Result<Derivation> {
     let mut files = model
         .sources()
         .into_iter()
@@ -71,17 +98,21 @@ pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format
     let laws = files.map(|file| (stem(&file.path), file)).collect();
     let (derivation, _) = generate(&Sources { spec, laws })
         .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
-    let chosen = operator.map(|name| match name {
-        OperatorName::Base => Section::Base,
-        OperatorName::Linear => Section::Linear,
-        OperatorName::Adjoint => Section::Adjoint,
-        OperatorName::N2 => Section::Nonlinear(2),
-        OperatorName::N3 => Section::Nonlinear(3),
-    });
-    for section in text::sections(&derivation) {
-        if chosen.is_none_or(|c| c == section) {
-            say!("{}", text::print(&derivation, section));
-        }
-    }
-    Ok(())
+    Ok(derivation)
+}
+
+/// All sections of the derived operators in LaTeX.
+pub fn formulas(model: &dyn Model) -> Result<Formulas> {
+    let derivation = derive(model)?;
+    let title = |section: &Section| match section {
+        Section::Base => "Base state".to_owned(),
+        Section::Linear => "Linear operator".to_owned(),
+        Section::Adjoint => "Adjoint operator".to_owned(),
+        Section::Nonlinear(degree) => format!("Nonlinear operator of degree {degree}"),
+    };
+    let sections = text::sections(&derivation).into_iter();
+    let sections = sections.map(|s| (title(&s), text::latex(&derivation, s)));
+    Ok(Formulas {
+        sections: sections.collect(),
+    })
 }

@@ -1,9 +1,10 @@
 //! The command `reproduce`: a study file worked through.
 
+use super::inspect;
 use super::solve::progress;
 use crate::error::{Error, Result};
 use crate::library::Library;
-use crate::reproduce::{Formulas, Study, Workshop};
+use crate::reproduce::{Study, Workshop};
 use serde_json::json;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,9 +15,7 @@ pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool
         None => only_study()?,
     };
     let study = Study::read(&path)?;
-    let formulas = Formulas {
-        sections: Vec::new(),
-    };
+    let formulas = library.with_model(&study.model, inspect::formulas)?;
     let shop = Workshop {
         library,
         study: &study,

@@ -63,6 +63,12 @@ impl Panel {
             .collect()
     }
 
+    /// The smallest value that is drawn.
+    fn lowest(&self) -> f64 {
+        let runs = self.curves.iter().flat_map(|curve| self.runs(curve));
+        runs.flatten().map(|p| p.1).fold(f64::INFINITY, f64::min)
+    }
+
     fn plots(&self) -> Vec<Plot> {
         let mut plots: Vec<Plot> = Vec::new();
         let finite = |p: &&(f64, f64)| p.0.is_finite() && p.1.is_finite();
@@ -133,14 +139,17 @@ pub fn panels(title: &str, panels: &[Panel]) -> Option<String> {
             layout = layout.with_log_x();
         }
         if panel.logarithmic[1] {
-            layout = layout.with_log_y();
+            layout = layout.with_log_y().with_y_axis_min(panel.lowest());
         }
         plots.push(curves);
         layouts.push(layout);
     }
     let columns = drawn.len().min(3);
-    let figure = Figure::new(drawn.len().div_ceil(columns), columns)
-        .with_title(title)
+    let mut figure = Figure::new(drawn.len().div_ceil(columns), columns);
+    if !title.is_empty() {
+        figure = figure.with_title(title);
+    }
+    let figure = figure
         .with_plots(plots)
         .with_layouts(layouts)
         .with_cell_size(460.0, 360.0);

@@ -13,6 +13,8 @@ use indicatif::ProgressBar;
 const SCAN: usize = 61;
 /// Every so many of them the whole spectrum is computed, to find the mode to follow.
 const STRIDE: usize = 6;
+/// Steps of a range of k in which the largest growth is looked for.
+const CREST_STEPS: usize = 16;
 /// Relative accuracy of roots.
 const TOLERANCE: f64 = 1e-12;
 
@@ -238,23 +240,32 @@ pub fn minimise(
         });
         Ok((pair.c.re, pair))
     };
+    let edge = |x: f64| -> Result<f64> {
+        let moved = setup.moved(question.axis, x)?;
+        let base = moved.base(None)?;
+        moved.with_problem(&base, |problem| {
+            highest(problem, question.near, (from, to)).map(|pair| pair.c.re)
+        })
+    };
     let mut previous: Option<(f64, f64, Option<Carried>)> = None;
     for step in 0..=steps {
         progress.inc(1);
         let x = question.from + (question.to - question.from) * step as f64 / steps as f64;
         // Each scan point looks over the whole range of k, in case another mode takes over.
         let mut fresh = None;
-        let Ok((growth, _)) = peak(x, &mut fresh) else {
-            continue;
+        let growth = match peak(x, &mut fresh) {
+            Ok((growth, _)) => growth,
+            // Largest at an end of the range: enough to say that nothing grows here.
+            Err(_) => match edge(x) {
+                Ok(growth) if growth < 0.0 => growth,
+                _ => continue,
+            },
         };
         if let Some((x0, g0, before)) = &previous
             && g0 * growth <= 0.0
         {
-            let mut carried = if growth.abs() < g0.abs() {
-                fresh
-            } else {
-                before.clone()
-            };
+            // The mode that grows on one side is the one that is followed to zero.
+            let mut carried = if growth > 0.0 { fresh } else { before.clone() };
             let span = TOLERANCE * x.abs().max(x0.abs());
             let (root, _) = brent(
                 |x| peak(x, &mut carried).map(|(g, _)| g),
@@ -278,6 +289,20 @@ pub fn minimise(
     )))
 }
 
+/// The mode of largest growth among evenly spaced k.
+fn highest(
+    problem: &crate::problem::Problem,
+    target: Option<C64>,
+    (from, to): (f64, f64),
+) -> Result<EigenPair> {
+    let selection = target.map_or(Selection::Leading, Selection::Near);
+    let places = (0..=CREST_STEPS).map(|i| from + (to - from) * i as f64 / CREST_STEPS as f64);
+    let modes = places.filter_map(|k| weakly::select(problem, k, selection).ok());
+    modes
+        .max_by(|a, b| a.c.re.total_cmp(&b.c.re))
+        .ok_or_else(|| Error::computation("no mode was found in the range of k"))
+}
+
 /// The mode of largest growth over k: scanned where nothing is known, then dc0/dk = 0.
 fn crest(
     problem: &crate::problem::Problem,
@@ -285,24 +310,10 @@ fn crest(
     target: Option<C64>,
     (from, to): (f64, f64),
 ) -> Result<EigenPair> {
-    let steps = 16;
-    let spacing = (to - from) / steps as f64;
+    let spacing = (to - from) / CREST_STEPS as f64;
     let start = match near {
         Some(pair) => pair.clone(),
-        None => {
-            let mut best: Option<EigenPair> = None;
-            for step in 0..=steps {
-                let k = from + spacing * step as f64;
-                let selection = target.map_or(Selection::Leading, Selection::Near);
-                let Ok(pair) = weakly::select(problem, k, selection) else {
-                    continue;
-                };
-                if best.as_ref().is_none_or(|b| pair.c.re > b.c.re) {
-                    best = Some(pair);
-                }
-            }
-            best.ok_or_else(|| Error::computation("no mode was found in the range of k"))?
-        }
+        None => highest(problem, target, (from, to))?,
     };
     let mut pair = crate::spectrum::follow(problem, start.k, &start)?;
     let mut slope = |k: f64| -> Result<f64> {

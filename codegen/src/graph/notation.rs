@@ -1,0 +1,214 @@
+//! Two ways of writing the same formulas: plain text on one line, and LaTeX.
+
+use super::Rational;
+use num_traits::Signed;
+
+/// How the pieces of a formula are written.
+pub trait Notation {
+    /// A name with a mark (`⁰`, `'` or none; a trailing † belongs to the name) and subscripts.
+    fn symbol(&self, name: &str, mark: &str, subscripts: &[&str]) -> String;
+    /// ∂ by a coordinate, to a power above 0.
+    fn partial(&self, coordinate: &str, power: u8) -> String;
+    /// |∂| by a coordinate, to a power above 0.
+    fn absolute_partial(&self, coordinate: &str, power: u8) -> String;
+    /// A bare name: a coordinate, π, a wavenumber.
+    fn letter(&self, name: &str) -> String;
+    /// A number that is not negative.
+    fn number(&self, value: &Rational) -> String;
+    fn fraction(&self, above: &str, below: &[String]) -> String;
+    fn power(&self, base: &str, exponent: &Rational) -> String;
+    fn root(&self, of: &str) -> String;
+    fn call(&self, function: &str, argument: &str) -> String;
+    fn brackets(&self, inside: &str) -> String;
+    fn choice(&self, switch: &str, branches: &[String]) -> String;
+    fn integral(&self, integrand: &str, variable: &str) -> String;
+}
+
+/// One line of text.
+pub struct Plain;
+
+/// LaTeX without packages beyond amsmath.
+pub struct Latex;
+
+impl Notation for Plain {
+    fn symbol(&self, name: &str, mark: &str, subscripts: &[&str]) -> String {
+        match subscripts.concat().as_str() {
+            "" => format!("{name}{mark}"),
+            below => format!("{name}{mark}_{below}"),
+        }
+    }
+
+    fn partial(&self, coordinate: &str, power: u8) -> String {
+        match power {
+            1 => format!("∂{coordinate}"),
+            2 => format!("∂{coordinate}²"),
+            3 => format!("∂{coordinate}³"),
+            4 => format!("∂{coordinate}⁴"),
+            n => format!("∂{coordinate}^{n}"),
+        }
+    }
+
+    fn absolute_partial(&self, coordinate: &str, power: u8) -> String {
+        match power {
+            1 => format!("|∂{coordinate}|"),
+            n => format!("|∂{coordinate}|^{n}"),
+        }
+    }
+
+    fn letter(&self, name: &str) -> String {
+        name.to_owned()
+    }
+
+    fn number(&self, value: &Rational) -> String {
+        value.to_string()
+    }
+
+    fn fraction(&self, above: &str, below: &[String]) -> String {
+        match below {
+            [one] => format!("{above}/{one}"),
+            _ => format!("{above}/({})", below.join(" ")),
+        }
+    }
+
+    fn power(&self, base: &str, exponent: &Rational) -> String {
+        if exponent.is_integer() {
+            format!("{base}^{exponent}")
+        } else {
+            format!("{base}^({exponent})")
+        }
+    }
+
+    fn root(&self, of: &str) -> String {
+        format!("√{of}")
+    }
+
+    fn call(&self, function: &str, argument: &str) -> String {
+        format!("{function}({argument})")
+    }
+
+    fn brackets(&self, inside: &str) -> String {
+        format!("({inside})")
+    }
+
+    fn choice(&self, switch: &str, branches: &[String]) -> String {
+        format!("select({switch}; {})", branches.join(", "))
+    }
+
+    fn integral(&self, integrand: &str, variable: &str) -> String {
+        format!("∫ {integrand} d{variable}")
+    }
+}
+
+/// Names that LaTeX has a letter for.
+const GREEK: [&str; 23] = [
+    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa",
+    "lambda", "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi",
+    "omega",
+];
+
+impl Notation for Latex {
+    fn symbol(&self, name: &str, mark: &str, subscripts: &[&str]) -> String {
+        let (name, dagger) = match name.strip_suffix('†') {
+            Some(name) => (name, "\\dagger"),
+            None => (name, ""),
+        };
+        let mark = match mark {
+            "⁰" => "0",
+            "'" => "\\prime",
+            _ => "",
+        };
+        let mut text = self.letter(name);
+        let above = format!("{mark}{dagger}");
+        if !above.is_empty() {
+            text += &format!("^{{{above}}}");
+        }
+        if !subscripts.is_empty() {
+            let below: Vec<String> = subscripts.iter().map(|s| self.letter(s)).collect();
+            text += &format!("_{{{}}}", below.join(" "));
+        }
+        text
+    }
+
+    fn partial(&self, coordinate: &str, power: u8) -> String {
+        let below = self.letter(coordinate);
+        match power {
+            1 => format!("\\partial_{{{below}}}"),
+            n => format!("\\partial_{{{below}}}^{{{n}}}"),
+        }
+    }
+
+    fn absolute_partial(&self, coordinate: &str, power: u8) -> String {
+        let below = self.letter(coordinate);
+        format!("|\\partial_{{{below}}}|^{{{power}}}")
+    }
+
+    fn letter(&self, name: &str) -> String {
+        let (stem, digits) =
+            name.split_at(name.trim_end_matches(|c: char| c.is_ascii_digit()).len());
+        let stem = if GREEK.contains(&stem) {
+            format!("\\{stem}")
+        } else if stem.chars().count() == 1 {
+            stem.to_owned()
+        } else {
+            format!("\\mathrm{{{}}}", stem.replace('_', "\\_"))
+        };
+        match digits {
+            "" => stem,
+            digits => format!("{stem}_{{{digits}}}"),
+        }
+    }
+
+    fn number(&self, value: &Rational) -> String {
+        if value.is_integer() {
+            value.to_string()
+        } else {
+            format!("\\tfrac{{{}}}{{{}}}", value.numer(), value.denom())
+        }
+    }
+
+    fn fraction(&self, above: &str, below: &[String]) -> String {
+        format!("\\frac{{{above}}}{{{}}}", below.join("\\,"))
+    }
+
+    fn power(&self, base: &str, exponent: &Rational) -> String {
+        // A symbol that has a superscript already.
+        let base = match base.contains('^') && !base.ends_with("\\right)") {
+            true => self.brackets(base),
+            false => base.to_owned(),
+        };
+        let sign = if exponent.is_negative() { "-" } else { "" };
+        format!("{base}^{{{sign}{}}}", self.number(&exponent.abs()))
+    }
+
+    fn root(&self, of: &str) -> String {
+        format!("\\sqrt{{{of}}}")
+    }
+
+    fn call(&self, function: &str, argument: &str) -> String {
+        let name = match function {
+            "exp" | "log" | "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" => {
+                format!("\\{function}")
+            }
+            "atan" => "\\arctan".to_owned(),
+            other => format!("\\mathrm{{{other}}}"),
+        };
+        format!("{name}{}", self.brackets(argument))
+    }
+
+    fn brackets(&self, inside: &str) -> String {
+        format!("\\left({inside}\\right)")
+    }
+
+    fn choice(&self, switch: &str, branches: &[String]) -> String {
+        let switch = self.letter(switch);
+        format!(
+            "\\left\\{{{}\\right\\}}_{{{switch}}}",
+            branches.join(",\\; ")
+        )
+    }
+
+    fn integral(&self, integrand: &str, variable: &str) -> String {
+        let variable = self.letter(variable);
+        format!("\\int {integrand}\\,\\mathrm{{d}}{variable}")
+    }
+}
