@@ -8,5 +8,6 @@ mod golden;
 mod identities;
 mod published;
 mod published_bed;
+mod reproduce;
 mod support;
 mod tutorial;

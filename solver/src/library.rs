@@ -21,9 +21,9 @@ impl Library {
         name: &str,
         action: impl FnOnce(&dyn Model) -> Result<R>,
     ) -> Result<R> {
-        let built = |m: &&Box<dyn Model>| m.structure().name == name;
-        if let Some(model) = self.models.iter().find(built) {
-            return action(model.as_ref());
+        let mut built = self.models.iter().map(AsRef::as_ref);
+        if let Some(model) = built.find(|model| model.structure().name == name) {
+            return action(model);
         }
         let path = Path::new(name);
         if name.ends_with(".model") || path.is_file() {

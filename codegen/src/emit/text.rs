@@ -278,7 +278,11 @@ impl<'a> Writer<'a> {
                 .iter()
                 .map(|(jet, weight)| self.scaled(*weight, &self.jet(*jet)))
                 .collect();
-            let variable = self.derivation.model.coordinate();
+            let model = &self.derivation.model;
+            let variable = match model.interval {
+                Some(_) => model.coordinate(),
+                None => &model.periodic,
+            };
             self.notation.integral(&terms.join(" + "), variable)
         };
         match closure {

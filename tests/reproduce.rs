@@ -1,0 +1,253 @@
+//! Patterns as data, and a study worked through into a report.
+
+use crate::support::{close, landau};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// One study file with every sort of answer that is quick.
+const STUDY: &str = r#"
+title = "A small study"
+source = "an exact solution"
+model = "vibrated_bed"
+resolution = 40
+
+[[figure]]
+id = "1"
+title = "Numbers"
+[[figure.task]]
+kind = "critical"
+[[figure.task.asked]]
+name = "k_u"
+vary = "k"
+between = [0.12, 0.2]
+[[figure.task.asked]]
+name = "none"
+vary = "k"
+between = [0.08, 0.1]
+[[figure.task.case]]
+printed = { k_u = 0.1748 }
+[[figure.task]]
+kind = "sweep"
+over = { name = "k", from = 0.15, to = 0.17, count = 5 }
+columns = ["a0", "a2", "amplitude"]
+[[figure.task.case]]
+label = "H = 40"
+
+[[figure]]
+id = "2"
+title = "A pattern"
+[[figure.task]]
+kind = "pattern"
+shade = "n"
+arrows = ["u", "v"]
+[[figure.task.case]]
+label = "k = 0.16"
+k = 0.16
+"#;
+
+fn run(arguments: &[&str]) -> String {
+    let answer = landau(arguments);
+    assert_eq!(answer.status, 0, "{arguments:?}: {}", answer.err);
+    answer.out
+}
+
+/// Values of `name="…"` in a page.
+fn attributes<'p>(page: &'p str, name: &str) -> Vec<&'p str> {
+    let start = format!(" {name}=\"");
+    let pieces = page.split(&start).skip(1);
+    pieces.filter_map(|piece| piece.split('"').next()).collect()
+}
+
+#[test]
+fn a_study_becomes_a_report() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, out) = (
+        folder.path().join("small.toml"),
+        folder.path().join("report"),
+    );
+    fs::write(&file, STUDY).expect("written");
+    let arguments = [
+        "reproduce",
+        file.to_str().expect("a path"),
+        "--out",
+        out.to_str().expect("a path"),
+    ];
+    run(&arguments);
+    let read = |name: &str| fs::read_to_string(out.join(name)).expect(name);
+    let page = read("index.html");
+    let links = attributes(&page, "src")
+        .into_iter()
+        .chain(attributes(&page, "href"));
+    for link in links.filter(|link| !link.starts_with('#')) {
+        assert!(out.join(link).is_file(), "{link} is missing");
+    }
+    for wanted in [
+        "<math",
+        "<table",
+        "figure1-1.svg",
+        "figure2-1.npz",
+        "Did not come out",
+    ] {
+        assert!(page.contains(wanted), "{wanted} is not in the page");
+    }
+    let numbers: Value = serde_json::from_str(&read("numbers.json")).expect("JSON");
+    let upper = &numbers[0];
+    assert_eq!(upper["quantity"], "k_u");
+    assert_eq!(upper["printed"], 0.1748);
+    close(
+        "k_u",
+        upper["ours"].as_f64().expect("a number"),
+        0.17454,
+        2e-5,
+    );
+
+    // An interrupted run goes on, and ends in the same bytes.
+    let before = [
+        read("index.html"),
+        read("numbers.json"),
+        read("figure1-1.csv"),
+    ];
+    for name in ["index.html", "numbers.json", "kept/2.json"] {
+        fs::remove_file(out.join(name)).expect(name);
+    }
+    run(&arguments);
+    let after = [
+        read("index.html"),
+        read("numbers.json"),
+        read("figure1-1.csv"),
+    ];
+    assert!(before == after, "a resumed run differs");
+    browse(&out, attributes(&page, "src").len());
+}
+
+/// Every picture loads in a browser, where there is one.
+fn browse(out: &Path, pictures: usize) {
+    let names = ["chromium", "chromium-browser", "google-chrome"];
+    let works = |name: &&&str| Command::new(name).arg("--version").output().is_ok();
+    let Some(browser) = names.iter().find(works) else {
+        eprintln!("SKIPPED: the report was not opened in a browser, for there is no chromium");
+        return;
+    };
+    let page = fs::read_to_string(out.join("index.html")).expect("the page");
+    let count = "<script>onload = () => document.body.dataset.loaded = \
+                 [...document.images].filter(i => i.naturalWidth > 0).length</script>";
+    let copy = out.join("counted.html");
+    fs::write(&copy, page + count).expect("written");
+    let address = format!("file://{}", copy.display());
+    let profile = format!("--user-data-dir={}", out.join("browser").display());
+    let output = Command::new(browser)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", &profile])
+        .args(["--virtual-time-budget=10000", "--dump-dom", &address])
+        .output()
+        .expect("the browser runs");
+    let dom = String::from_utf8_lossy(&output.stdout);
+    let loaded = attributes(&dom, "data-loaded");
+    assert_eq!(loaded, [pictures.to_string()], "pictures that load");
+    assert!(dom.contains("<table"), "the tables are there");
+}
+
+#[test]
+fn a_study_that_asks_for_nothing_known_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("report");
+    for (broken, expected) in [
+        (
+            STUDY.replace("kind = \"sweep\"", "kind = \"swoop\""),
+            "swoop",
+        ),
+        (
+            STUDY.replace("vibrated_bed", "vibrated_bad"),
+            "did you mean",
+        ),
+        (STUDY.replace("vary = \"k\"", "vary = \"Q\""), "Q"),
+        (STUDY.replace("shade = \"n\"", "shade = \"m\""), "`m`"),
+    ] {
+        let file = folder.path().join("broken.toml");
+        fs::write(&file, broken).expect("written");
+        let answer = landau(&[
+            "reproduce",
+            file.to_str().expect("a path"),
+            "--out",
+            out.to_str().expect("a path"),
+        ]);
+        assert_eq!(answer.status, 2, "{expected}: {}", answer.err);
+        assert!(answer.err.contains(expected), "{expected}: {}", answer.err);
+        assert!(!out.join("index.html").exists());
+    }
+}
+
+/// A list of numbers of a VTK file, after the line that begins with `start`.
+fn values(text: &str, start: &str, skipped: usize) -> Vec<f64> {
+    let lines = text
+        .lines()
+        .skip_while(|l| !l.starts_with(start))
+        .skip(1 + skipped);
+    lines
+        .take_while(|l| l.starts_with(|c: char| c.is_ascii_digit() || c == '-'))
+        .flat_map(|l| {
+            l.split(' ')
+                .map(|v| v.parse().expect("a number"))
+                .collect::<Vec<f64>>()
+        })
+        .collect()
+}
+
+/// The modes carry no mass: ∫∫ n dx dy over wavelengths is F per length, for both patterns.
+#[test]
+fn patterns_keep_the_mass() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let files = [path("a.vtk"), path("a.npz"), path("a.nc"), path("a.svg")];
+    run(&[
+        "pattern",
+        "vibrated_bed",
+        "--k",
+        "0.16",
+        "--points",
+        "33x401",
+        "--out",
+        &files[0],
+        "--out",
+        &files[1],
+        "--out",
+        &files[2],
+        "--out",
+        &files[3],
+    ]);
+    let text = fs::read_to_string(&files[0]).expect("the file");
+    let (x, y) = (values(&text, "X_COORD", 0), values(&text, "Y_COORD", 0));
+    assert_eq!((x.len(), y.len()), (33, 401));
+    for name in ["n_linear", "n_nonlinear"] {
+        let n = values(&text, &format!("SCALARS {name} "), 1);
+        let row = |j: usize| -> f64 { n[j * 33..j * 33 + 32].iter().sum::<f64>() / 32.0 };
+        let panels = (0..400).map(|j| 0.5 * (row(j) + row(j + 1)) * (y[j + 1] - y[j]));
+        // The trapezoidal rule in y: (40/400)²/12 times slopes of order one.
+        close(name, panels.sum(), 6.0, 2e-4);
+    }
+    let start = |file: &str| fs::read(file).expect("the file")[..4].to_vec();
+    assert_eq!(start(&files[1]), b"PK\x03\x04");
+    assert_eq!(start(&files[2]), b"CDF\x01");
+    assert_eq!(start(&files[3]), b"<svg");
+}
+
+#[test]
+fn formulas_in_latex() {
+    let printed = run(&[
+        "explain",
+        "vibrated_bed",
+        "--operator",
+        "L",
+        "--format",
+        "latex",
+    ]);
+    for wanted in [
+        r"[\text{mass},\,v]\quad -n^{0}_{y} - n^{0} \partial_{y}",
+        r"\frac{\mu^{0}_{y}}{n^{0}} \partial_{y} + \frac{\mu^{0}}{n^{0}} \partial_{y}^{2}",
+    ] {
+        assert!(printed.contains(wanted), "{wanted} is not in\n{printed}");
+    }
+    let balanced = |line: &str| line.matches('{').count() == line.matches('}').count();
+    assert!(printed.lines().all(balanced));
+}
