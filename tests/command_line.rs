@@ -160,6 +160,8 @@ fn certificates_hold() {
         "verify plane_poiseuille --k 1 --set R=8000 -M 60",
         "verify rayleigh_benard --k 3 --set Ra=2000",
         "verify brusselator --k 1.9",
+        "verify brusselator_strip --k 1.9",
+        "verify plane_poiseuille_flux --k 1 --set R=8000 -M 60",
         "verify kuramoto_sivashinsky --k 0.9",
         "verify swift_hohenberg --k 0.95",
         "verify robin_strip --k 1",

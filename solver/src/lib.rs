@@ -4,7 +4,7 @@
 //!
 //! [`model`] (kernels, number types) → [`base`] (base state) → [`collocation`] and [`problem`]
 //! (matrices) → [`spectrum`] (modes) → [`weakly`] (amplitude expansion, Landau coefficients) →
-//! [`study`] (critical points, sweeps, certificate) → [`cli`].
+//! [`study`] (critical points, sweeps, certificate) → [`figure`], [`data`] → [`reproduce`] → [`cli`].
 //!
 //! ```
 //! use landau_solver::model::C64;

@@ -59,7 +59,7 @@ pub fn print(derivation: &Derivation, section: Section) -> String {
 
 /// One section as LaTeX, a displayed formula an item; headings are formulas of text.
 pub fn latex(derivation: &Derivation, section: Section) -> Vec<String> {
-    let words = |text: &str| format!("\\text{{{}}}", text.replace('_', "\\_"));
+    let words = |text: &str| format!("\\text{{{}}}", text.replace('_', " "));
     let lines = lines(&Writer::new(derivation, &Latex), section);
     let rows = lines.into_iter().map(|line| match line {
         Line::Heading(text) | Line::Case(text) | Line::Words(text) => words(&text),

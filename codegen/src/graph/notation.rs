@@ -139,7 +139,10 @@ impl Notation for Latex {
 
     fn absolute_partial(&self, coordinate: &str, power: u8) -> String {
         let below = self.letter(coordinate);
-        format!("|\\partial_{{{below}}}|^{{{power}}}")
+        match power {
+            1 => format!("|\\partial_{{{below}}}|"),
+            n => format!("|\\partial_{{{below}}}|^{{{n}}}"),
+        }
     }
 
     fn letter(&self, name: &str) -> String {

@@ -17,7 +17,10 @@ pub fn models(models: &[Box<dyn Model>], json: bool) -> Result<()> {
     if json {
         let list: Vec<_> = models
             .iter()
-            .map(|m| json!({"name": m.structure().name, "title": m.structure().title}))
+            .map(|m| {
+                let s = m.structure();
+                json!({"name": s.name, "title": s.title, "operations": s.operations})
+            })
             .collect();
         say!("{}", json!(list));
         return Ok(());

@@ -3,6 +3,9 @@
 use super::{COLOURS, svg};
 use kuva::prelude::*;
 
+/// Below this the plotting library's logarithmic axes stand still.
+const LOWEST_LOGARITHMIC: f64 = 1e-10;
+
 /// How a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
@@ -54,19 +57,14 @@ impl Panel {
     /// Runs of points that can be drawn.
     fn runs(&self, curve: &Curve) -> Vec<Vec<(f64, f64)>> {
         let [log_x, log_y] = self.logarithmic;
-        let shown = |(x, y): &(f64, f64)| {
-            x.is_finite() && y.is_finite() && (!log_x || *x > 0.0) && (!log_y || *y > 0.0)
+        let drawable = |value: f64, logarithmic: bool| {
+            value.is_finite() && (!logarithmic || value >= LOWEST_LOGARITHMIC)
         };
+        let shown = |(x, y): &(f64, f64)| drawable(*x, log_x) && drawable(*y, log_y);
         let runs = curve.points.split(|point| !shown(point));
         runs.filter(|run| !run.is_empty())
             .map(<[(f64, f64)]>::to_vec)
             .collect()
-    }
-
-    /// The smallest value that is drawn.
-    fn lowest(&self) -> f64 {
-        let runs = self.curves.iter().flat_map(|curve| self.runs(curve));
-        runs.flatten().map(|p| p.1).fold(f64::INFINITY, f64::min)
     }
 
     fn plots(&self) -> Vec<Plot> {
@@ -139,7 +137,7 @@ pub fn panels(title: &str, panels: &[Panel]) -> Option<String> {
             layout = layout.with_log_x();
         }
         if panel.logarithmic[1] {
-            layout = layout.with_log_y().with_y_axis_min(panel.lowest());
+            layout = layout.with_log_y();
         }
         plots.push(curves);
         layouts.push(layout);

@@ -20,7 +20,7 @@ nav { columns: 2; font-size: 0.9rem } figure { margin: 1.5rem 0; overflow-x: aut
 figcaption { font-size: 0.9rem; color: #444 } table { border-collapse: collapse; font-size: 0.9rem }
 th, td { padding: 0.2rem 0.8rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
 td.number { font-variant-numeric: tabular-nums; text-align: right } .failure { color: #a33 }
-.formula { overflow-x: auto; padding: 0.3rem 0 }";
+.formula { overflow-x: auto; overflow-y: hidden; padding: 0.3rem 0 } .formula math { text-align: left; margin: 0 }";
 
 pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) -> Result<()> {
     let study = shop.study;
