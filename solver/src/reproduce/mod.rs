@@ -1,7 +1,7 @@
 //! A study file worked through: figures, numbers beside the printed ones, a report.
 //!
-//! [`study`] (the file) → [`task`] (what is computed) → [`outcome`] (pictures, tables, numbers) →
-//! [`report`] (HTML, JSON). A figure that is finished is kept beside the report, so that an
+//! `study` (the file) → `task` (what is computed) → `outcome` (pictures, tables, numbers) →
+//! `report` (HTML, JSON). A figure that is finished is kept beside the report, so that an
 //! interrupted run goes on where it was.
 
 mod outcome;

@@ -8,7 +8,7 @@ use landau_solver::weakly::{Selection, point};
 
 include!(concat!(env!("OUT_DIR"), "/models.rs"));
 
-/// c0 and c2 at wavenumber 1, where X[2;2] = −i/(9 + r) by hand, and so c2 = −1/(9 + r).
+/// c0 and c2 at wavenumber 1; by hand the second harmonic is −i/(9 + r), and so c2 = −1/(9 + r).
 fn coefficients(r: f64) -> Result<(f64, f64)> {
     let models = models();
     let mut setup = Setup::new(models[0].as_ref(), 1);

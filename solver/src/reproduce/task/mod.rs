@@ -83,20 +83,31 @@ pub(super) fn cases(task: &Task) -> &[Case] {
     }
 }
 
-/// Every case by itself, in parallel; what fails becomes a sentence.
-fn each<R: Send>(
-    cases: &[Case],
+/// What a failure is named after.
+trait Named {
+    fn label(&self) -> &str;
+}
+
+impl Named for Case {
+    fn label(&self) -> &str {
+        &self.label
+    }
+}
+
+/// Every item by itself, in parallel; what fails becomes a sentence.
+fn each<I: Named + Sync, R: Send>(
+    items: &[I],
     failures: &mut Vec<String>,
-    work: impl Fn(&Case) -> Result<R> + Sync + Send,
+    work: impl Fn(&I) -> Result<R> + Sync + Send,
 ) -> Result<Vec<(usize, R)>> {
-    let results: Vec<Result<R>> = cases.par_iter().map(&work).collect();
+    let results: Vec<Result<R>> = items.par_iter().map(&work).collect();
     let mut found = Vec::new();
     for (index, result) in results.into_iter().enumerate() {
         match result {
             Ok(value) => found.push((index, value)),
             // A study file that asks for what does not exist is wrong as a whole.
             Err(Error::Input(message)) => return Err(Error::Input(message)),
-            Err(error) => failures.push(format!("{}: {error}", cases[index].label)),
+            Err(error) => failures.push(format!("{}: {error}", items[index].label())),
         }
     }
     Ok(found)

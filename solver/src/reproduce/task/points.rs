@@ -4,7 +4,7 @@ use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Asked, Axis, Case, Of};
 use super::curves::{named, picture};
-use super::each;
+use super::{Named, each};
 use crate::error::{Error, Result};
 use crate::figure::{Panel, Style};
 use crate::study::critical::{self, Quantity, Question};
@@ -38,6 +38,38 @@ fn answer(setup: &Setup, case: &Case, asked: &Asked) -> Result<[f64; 2]> {
     Ok([found.value, found.k])
 }
 
+/// One question about one case.
+struct Inquiry {
+    case: Case,
+    label: String,
+    /// Where it stands on the axis of a curve, or the number of the case.
+    place: f64,
+    question: usize,
+}
+
+impl Named for Inquiry {
+    fn label(&self) -> &str {
+        &self.label
+    }
+}
+
+/// The cases, each moved along the axis that they are drawn against.
+fn along(cases: &[Case], against: Option<&Axis>) -> Vec<(Case, Option<f64>)> {
+    let Some(axis) = against else {
+        return cases.iter().map(|case| (case.clone(), None)).collect();
+    };
+    let mut moved = Vec::new();
+    for case in cases {
+        for value in axis.values() {
+            let mut case = case.clone();
+            case.label = named(&case, &format!("{} = {value}", axis.name));
+            case.set.push(format!("{}={value}", axis.name));
+            moved.push((case, Some(value)));
+        }
+    }
+    moved
+}
+
 pub(super) fn critical(
     shop: &Workshop,
     figure: &str,
@@ -46,37 +78,20 @@ pub(super) fn critical(
     against: Option<&Axis>,
 ) -> Result<Outcome> {
     let mut outcome = Outcome::default();
-    // A curve against a parameter is a row of cases.
-    let all: Vec<(Case, Option<f64>)> = match against {
-        None => cases.iter().map(|case| (case.clone(), None)).collect(),
-        Some(axis) => cases
-            .iter()
-            .flat_map(|case| {
-                axis.values().into_iter().map(|value| {
-                    let mut moved = case.clone();
-                    moved.set.push(format!("{}={value}", axis.name));
-                    moved.label = named(case, &format!("{} = {value}", axis.name));
-                    (moved, Some(value))
-                })
-            })
-            .collect(),
-    };
-    let tasks: Vec<(usize, usize)> = (0..all.len())
-        .flat_map(|case| (0..asked.len()).map(move |question| (case, question)))
-        .collect();
-    let pairs: Vec<Case> = tasks
-        .iter()
-        .map(|&(case, question)| Case {
-            label: named(&all[case].0, &asked[question].name),
-            ..all[case].0.clone()
-        })
-        .collect();
-    let lookup = |case: &Case| {
-        let position = pairs.iter().position(|p| std::ptr::eq(p, case));
-        position.map_or(0, |position| tasks[position].1)
-    };
-    let found = each(&pairs, &mut outcome.failures, |case| {
-        shop.with_setup(case, |setup| answer(setup, case, &asked[lookup(case)]))
+    let mut inquiries: Vec<Inquiry> = Vec::new();
+    for (number, (case, place)) in along(cases, against).into_iter().enumerate() {
+        for (question, asked) in asked.iter().enumerate() {
+            inquiries.push(Inquiry {
+                label: named(&case, &asked.name),
+                case: case.clone(),
+                place: place.unwrap_or((number + 1) as f64),
+                question,
+            });
+        }
+    }
+    let found = each(&inquiries, &mut outcome.failures, |inquiry| {
+        let asked = &asked[inquiry.question];
+        shop.with_setup(&inquiry.case, |setup| answer(setup, &inquiry.case, asked))
     })?;
     let mut table = Table::new(&[
         against.map_or("case", |a| a.name.as_str()),
@@ -85,18 +100,20 @@ pub(super) fn critical(
         "k",
     ]);
     for (index, [value, k]) in found {
-        let (case, question) = tasks[index];
-        let quantity = &asked[question].name;
-        let place = all[case].1.unwrap_or((case + 1) as f64);
-        table
-            .rows
-            .push(vec![place, (question + 1) as f64, value, k]);
+        let Inquiry {
+            case,
+            label,
+            place,
+            question,
+        } = &inquiries[index];
+        let number = (question + 1) as f64;
+        table.rows.push(vec![*place, number, value, k]);
         outcome.numbers.push(Number {
             figure: figure.to_owned(),
-            quantity: pairs[index].label.clone(),
+            quantity: label.clone(),
             ours: Some(value),
-            printed: pairs[index].printed.get(quantity).copied(),
-            note: pairs[index].note.clone(),
+            printed: case.printed.get(&asked[*question].name).copied(),
+            note: case.note.clone(),
         });
     }
     if let Some(axis) = against {
