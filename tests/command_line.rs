@@ -253,3 +253,32 @@ fn failures_are_rows_too() {
     assert_eq!(answer.status, 2, "S = 0.5 is out of range: {}", answer.err);
     assert!(!out.exists());
 }
+
+/// A spec whose form is right and whose law has no derivative at the base state.
+#[test]
+fn a_law_singular_at_the_base_state_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("root.model");
+    let spec = "model root \"A square root at zero\";
+coordinates { x: periodic; y: 0..1; }
+parameters { r = 1; }
+fields { u; }
+law root = sqrt(u);
+balance { motion: dt(u) = dx(dx(u)) + dy(dy(u)) + r*root; }
+base { u = 0; }
+boundary { at y = 0 { u = 0; } at y = 1 { u = 0; } }
+";
+    std::fs::write(&path, spec).expect("written");
+    let path = path.to_str().expect("a path");
+    assert_eq!(landau(&["check", path]).status, 0);
+    for command in ["point", "spectrum", "verify"] {
+        let answer = landau(&[command, path, "--k", "1"]);
+        assert_eq!((answer.status, answer.out.as_str()), (3, ""), "{command}");
+        let told = ["balance `motion`", "singular at the base state"];
+        assert!(
+            told.iter().all(|t| answer.err.contains(t)),
+            "{}",
+            answer.err
+        );
+    }
+}
