@@ -6,6 +6,7 @@
 mod assemble;
 mod lower;
 mod polarise;
+mod program;
 
 pub use assemble::{ModelKernels, kernels};
 pub use lower::Lowering;

@@ -1,7 +1,8 @@
 //! Mistakes that several blocks share.
 
-use super::scope::{Context, Resolved, View};
-use crate::diagnostic::{Diagnostic, Location};
+use super::scope::{Context, Names, Resolved, View};
+use crate::diagnostic::{Diagnostic, Location, nearest};
+use crate::graph::Function;
 use crate::syntax::tree::Name;
 
 /// Words that name something in the language or on the command line.
@@ -43,4 +44,55 @@ pub(super) fn beginning() -> Location {
         file: 0,
         range: 0..0,
     }
+}
+
+impl Names {
+    /// A name that stands for nothing, with the nearest one that does.
+    pub(super) fn unknown(&self, name: &str, place: &Location, view: &View) -> Diagnostic {
+        let scope = &self.scopes[view.scope];
+        let mut candidates: Vec<&str> = view.arguments.iter().map(|(n, _)| n.as_str()).collect();
+        candidates.extend(scope.definitions.keys().map(String::as_str));
+        candidates.extend(scope.imports.keys().map(String::as_str));
+        candidates.extend(scope.parameters.keys().map(String::as_str));
+        let operators = [
+            format!("d{}", self.periodic),
+            format!("absd{}", self.periodic),
+            self.coordinate
+                .as_ref()
+                .map_or(String::new(), |c| format!("d{c}")),
+        ];
+        if view.scope == 0 {
+            candidates.extend(self.fields.keys().map(String::as_str));
+            candidates.extend(self.laws.keys().map(String::as_str));
+            candidates.extend(self.parameters.iter().map(|p| p.name.as_str()));
+            candidates.extend(operators.iter().map(String::as_str));
+            candidates.push("dt");
+        }
+        candidates.extend(Function::ALL.iter().map(|f| f.name()));
+        candidates.push("sqrt");
+        candidates.sort_unstable();
+        let mut hint = nearest(name, candidates).map(|n| format!("did you mean `{n}`?"));
+        if name == "k" || name == format!("k_{}", self.periodic) || name == "kx" {
+            hint = Some(format!(
+                "a wavenumber may not be used here: write d{0}(q) or absd{0}(q)",
+                self.periodic
+            ));
+        }
+        let expected = "a field, a parameter, a law or a definition";
+        Diagnostic::new(place.clone(), format!("`{name}` is not known"), expected).maybe_hint(hint)
+    }
+}
+
+/// A name of a kind that its context does not take.
+pub(super) fn misplaced(place: &Location, name: &str, what: &str, context: Context) -> Diagnostic {
+    let expected = match context {
+        Context::Profile => "parameters and the cross-stream coordinate",
+        Context::Amplitude => "parameters and k",
+        _ => "parameters and numbers",
+    };
+    Diagnostic::new(
+        place.clone(),
+        format!("`{name}` is {what}, which has no place here"),
+        expected,
+    )
 }

@@ -1,6 +1,7 @@
 //! Names and what they stand for: one scope a file, definitions expanded where they are used.
 
 use super::Parameter;
+use super::mistake::misplaced;
 use crate::diagnostic::{Diagnostic, Location, SourceFile, nearest};
 use crate::graph::{Function, Graph, Id, Jet, LawAtom, Node, Operator, Rational};
 use crate::syntax::tree::*;
@@ -550,53 +551,6 @@ impl Names {
         }
         result
     }
-
-    fn unknown(&self, name: &str, place: &Location, view: &View) -> Diagnostic {
-        let scope = &self.scopes[view.scope];
-        let mut candidates: Vec<&str> = view.arguments.iter().map(|(n, _)| n.as_str()).collect();
-        candidates.extend(scope.definitions.keys().map(String::as_str));
-        candidates.extend(scope.imports.keys().map(String::as_str));
-        candidates.extend(scope.parameters.keys().map(String::as_str));
-        let operators = [
-            format!("d{}", self.periodic),
-            format!("absd{}", self.periodic),
-            self.coordinate
-                .as_ref()
-                .map_or(String::new(), |c| format!("d{c}")),
-        ];
-        if view.scope == 0 {
-            candidates.extend(self.fields.keys().map(String::as_str));
-            candidates.extend(self.laws.keys().map(String::as_str));
-            candidates.extend(self.parameters.iter().map(|p| p.name.as_str()));
-            candidates.extend(operators.iter().map(String::as_str));
-            candidates.push("dt");
-        }
-        candidates.extend(Function::ALL.iter().map(|f| f.name()));
-        candidates.push("sqrt");
-        candidates.sort_unstable();
-        let mut hint = nearest(name, candidates).map(|n| format!("did you mean `{n}`?"));
-        if name == "k" || name == format!("k_{}", self.periodic) || name == "kx" {
-            hint = Some(format!(
-                "a wavenumber may not be used here: write d{0}(q) or absd{0}(q)",
-                self.periodic
-            ));
-        }
-        let expected = "a field, a parameter, a law or a definition";
-        Diagnostic::new(place.clone(), format!("`{name}` is not known"), expected).maybe_hint(hint)
-    }
-}
-
-fn misplaced(place: &Location, name: &str, what: &str, context: Context) -> Diagnostic {
-    let expected = match context {
-        Context::Profile => "parameters and the cross-stream coordinate",
-        Context::Amplitude => "parameters and k",
-        _ => "parameters and numbers",
-    };
-    Diagnostic::new(
-        place.clone(),
-        format!("`{name}` is {what}, which has no place here"),
-        expected,
-    )
 }
 
 /// Whether a rational is two.

@@ -1,0 +1,187 @@
+//! The last pass: opened outputs, residuals and polarised forms → straight-line kernels.
+
+use super::assemble::Assembler;
+use super::polarise::{form_tables, polarise};
+use super::{Array, Kernel, Lowering, ModelKernels};
+use crate::derive::base_value;
+use crate::graph::{Graph, Id, Jet, Node};
+use crate::structure::*;
+use std::collections::{BTreeSet, HashMap};
+
+impl Assembler<'_> {
+    pub(super) fn lower(mut self, mut structure: Structure) -> ModelKernels {
+        // Closed forms are asked for to the same order as solved fields.
+        let zero = self.graph.zero();
+        let mut closed = Vec::new();
+        for field in 0..structure.fields.len() {
+            for order in 0..=self.base_order {
+                closed.push(match self.model.base.closed[field] {
+                    Some(_) => base_value(self.graph, &self.model.base.closed, field, order as u8),
+                    None => zero,
+                });
+            }
+        }
+        self.expressions.push((KernelId::Closed, closed));
+        structure.base_order = self.base_order;
+        let residual_outputs = self.residuals();
+        structure.residual_jets = residual_jets(self.graph, &residual_outputs);
+        let residual_jets = structure.residual_jets.clone();
+        let forms = self.forms(&structure);
+        let graph = &*self.graph;
+        let locate = |node: &Node| match node {
+            Node::Coordinate => Some((0, 0)),
+            Node::Wavenumber => Some((0, 1)),
+            Node::Parameter(index) => Some((0, 2 + index)),
+            Node::Base(field, order) => {
+                Some((0, structure.base_position(*field, usize::from(*order))))
+            }
+            _ => None,
+        };
+        let point = || {
+            vec![Array {
+                name: "p",
+                real: true,
+            }]
+        };
+        let kernels: Vec<(KernelId, Kernel)> = self
+            .expressions
+            .iter()
+            .map(|(id, outputs)| {
+                (
+                    *id,
+                    Lowering {
+                        inputs: point(),
+                        locate: &locate,
+                    }
+                    .lower(graph, outputs),
+                )
+            })
+            .collect();
+        let locate = |node: &Node| match node {
+            Node::Coordinate => Some((0, 0)),
+            Node::Wavenumber => Some((0, 1)),
+            Node::Parameter(index) => Some((0, 2 + index)),
+            Node::Jet(jet) => residual_jets.iter().position(|j| j == jet).map(|p| (1, p)),
+            _ => None,
+        };
+        let arrays = || {
+            vec![
+                Array {
+                    name: "p",
+                    real: true,
+                },
+                Array {
+                    name: "x",
+                    real: false,
+                },
+            ]
+        };
+        let residuals = residual_outputs
+            .iter()
+            .map(|(id, outputs)| {
+                (
+                    *id,
+                    Lowering {
+                        inputs: arrays(),
+                        locate: &locate,
+                    }
+                    .lower(graph, outputs),
+                )
+            })
+            .collect();
+        let count = |kernels: &[(KernelId, Kernel)], of: fn(&Kernel) -> usize| -> usize {
+            let real: usize = kernels
+                .iter()
+                .map(|(_, k)| of(k))
+                .fold(0, usize::saturating_add);
+            real.saturating_add(forms.iter().flatten().flatten().map(of).sum())
+        };
+        structure.operations = vec![
+            count(&kernels, |k| k.unshared),
+            count(&kernels, Kernel::shared),
+        ];
+        ModelKernels {
+            structure,
+            kernels,
+            forms,
+            residuals,
+        }
+    }
+
+    /// The unexpanded residuals in the fields' derivatives, laws opened.
+    fn residuals(&mut self) -> Vec<(ResidualId, Vec<Id>)> {
+        let mut residuals = Vec::new();
+        let balances: Vec<Id> = self.model.balances.iter().map(|b| b.residual).collect();
+        let opened = balances
+            .into_iter()
+            .map(|id| self.opener.at_state(self.graph, id))
+            .collect();
+        residuals.push((ResidualId::Balances, opened));
+        for (index, case) in self.operators.cases.iter().enumerate() {
+            let mut opened = Vec::new();
+            for condition in &case.conditions {
+                opened.push(self.opener.at_state(self.graph, condition.residual));
+            }
+            residuals.push((ResidualId::Conditions(index), opened));
+        }
+        residuals
+    }
+
+    fn forms(&mut self, structure: &Structure) -> Vec<Vec<Option<Kernel>>> {
+        let (jets, coefficients) = form_tables(&self.operators.nonlinear);
+        let position: HashMap<Id, usize> = coefficients
+            .iter()
+            .enumerate()
+            .map(|(i, id)| (*id, i))
+            .collect();
+        const NAMES: [&str; 8] = ["x", "y", "z", "w", "v", "u", "s", "r"];
+        let mut kernels = Vec::new();
+        for (index, rows) in self.operators.nonlinear.iter().enumerate() {
+            let degree = index + 2;
+            let mut line = Vec::new();
+            for form in rows.iter().take(structure.balances.len()) {
+                if form.terms.is_empty() {
+                    line.push(None);
+                    continue;
+                }
+                let polar = polarise(self.graph, form, degree, &jets, &position);
+                let mut inputs = vec![Array {
+                    name: "c",
+                    real: true,
+                }];
+                inputs.extend(
+                    NAMES[..degree]
+                        .iter()
+                        .map(|&name| Array { name, real: false }),
+                );
+                let locate = |node: &Node| match node {
+                    Node::Slot(array, position) => Some((*array, *position)),
+                    _ => None,
+                };
+                line.push(Some(
+                    Lowering {
+                        inputs,
+                        locate: &locate,
+                    }
+                    .lower(self.graph, &[polar]),
+                ));
+            }
+            kernels.push(line);
+        }
+        kernels
+    }
+}
+
+fn residual_jets(graph: &Graph, residuals: &[(ResidualId, Vec<Id>)]) -> Vec<Jet> {
+    let roots: Vec<Id> = residuals
+        .iter()
+        .flat_map(|(_, ids)| ids.iter().copied())
+        .collect();
+    let mut jets = BTreeSet::new();
+    for node in graph.topological(&roots) {
+        if let Node::Jet(jet) = graph.node(node) {
+            jets.insert(*jet);
+        }
+    }
+    jets.into_iter().collect()
+}
