@@ -2,6 +2,7 @@
 
 mod command_line;
 mod diagnostics;
+mod errata;
 mod formulas;
 mod fuzz;
 mod golden;

@@ -9,6 +9,7 @@
 //! | derive | [`mod@derive`] | checked model | [`derive::Derivation`]: L, L†, N2, N3, conditions |
 //! | lower | [`kernel`] | operators | [`kernel::ModelKernels`]: straight-line programs |
 //! | emit | [`emit`] | kernels, operators | Rust source, readable text |
+//! | compare | [`errata`] | operators, a printed formula | [`errata::Comparison`], term by term |
 //!
 //! [`generate`] is the whole of it on a screen; [`build`] wraps it for a build script.
 
@@ -16,6 +17,7 @@ pub mod build;
 pub mod derive;
 pub mod diagnostic;
 pub mod emit;
+pub mod errata;
 pub mod graph;
 pub mod kernel;
 pub mod model;

@@ -5,8 +5,8 @@
 //! degree 2 and 3 what becomes N2 and N3. Terms beyond the truncation order are dropped as they
 //! arise.
 
-use crate::graph::{Graph, Id, Jet, Operator, Rational, Variable};
-use num_traits::One;
+use crate::graph::{Graph, Id, Jet, Node, Operator, Rational, Variable};
+use num_traits::{One, ToPrimitive};
 use std::collections::BTreeMap;
 
 /// A product of jets, sorted.
@@ -25,6 +25,49 @@ impl Form {
             form.terms.insert(Vec::new(), value);
         }
         form
+    }
+
+    /// An expression as a polynomial in its jets; what is no polynomial in them is a coefficient.
+    pub fn polynomial(graph: &mut Graph, id: Id) -> Self {
+        match graph.node(id).clone() {
+            Node::Jet(jet) => {
+                let one = graph.one();
+                let mut form = Form::default();
+                form.terms.insert(vec![jet], one);
+                form
+            }
+            Node::Sum(constant, terms) => {
+                let constant = graph.number(constant);
+                let mut form = Form::constant(graph, constant);
+                for (term, factor) in terms {
+                    let term = Form::polynomial(graph, term);
+                    form.add(graph, &term, &factor);
+                }
+                form
+            }
+            Node::Product(factors) => {
+                let one = graph.one();
+                let mut form = Form::constant(graph, one);
+                for (base, exponent) in factors {
+                    let power = exponent.to_integer().to_usize();
+                    let power = power.filter(|_| exponent.is_integer());
+                    let (factor, times) = match power {
+                        Some(power) if graph.any(base, |n| matches!(n, Node::Jet(_))) => {
+                            (Form::polynomial(graph, base), power)
+                        }
+                        _ => {
+                            let whole = graph.pow(base, exponent);
+                            (Form::constant(graph, whole), 1)
+                        }
+                    };
+                    for _ in 0..times {
+                        form = form.multiply(graph, &factor, usize::MAX);
+                    }
+                }
+                form
+            }
+            _ => Form::constant(graph, id),
+        }
     }
 
     /// The part of degree 0.

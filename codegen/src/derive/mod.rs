@@ -19,7 +19,7 @@ pub use closure::CaseClosure;
 pub use expand::base_value;
 pub use form::{Form, Monomial};
 pub use linear::Term;
-pub use open::Opener;
+pub use open::{Opener, carry_out, dependence};
 pub use parity::Parity;
 pub use wall::{BaseCondition, WallCondition};
 

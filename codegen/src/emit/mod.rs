@@ -1,4 +1,5 @@
 //! Kernels and operators → Rust and readable text.
 
+pub mod difference;
 pub mod rust;
 pub mod text;

@@ -89,10 +89,10 @@ pub fn nonlinear_row(derivation: &Derivation, degree: usize, row: usize) -> Stri
     Writer::new(derivation, &Plain).form(&derivation.operators.nonlinear[degree - 2][row])
 }
 
-struct Writer<'a> {
+pub(super) struct Writer<'a> {
     derivation: &'a Derivation,
     notation: &'a dyn Notation,
-    fields: Vec<String>,
+    pub(super) fields: Vec<String>,
     /// Adjoint fields by balance.
     adjoint_fields: Vec<String>,
     parameters: Vec<String>,
@@ -100,7 +100,7 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(derivation: &'a Derivation, notation: &'a dyn Notation) -> Self {
+    pub(super) fn new(derivation: &'a Derivation, notation: &'a dyn Notation) -> Self {
         let model = &derivation.model;
         let fields = model.field_names();
         let adjoint_fields = derivation
@@ -119,7 +119,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn printer<'b>(&'b self, fields: &'b [String]) -> Printer<'b> {
+    pub(super) fn printer<'b>(&'b self, fields: &'b [String]) -> Printer<'b> {
         Printer {
             graph: &self.derivation.model.graph,
             fields,
@@ -377,7 +377,7 @@ impl<'a> Writer<'a> {
     }
 
     /// coefficient · what, ones left out.
-    fn scaled(&self, coefficient: Id, what: &str) -> String {
+    pub(super) fn scaled(&self, coefficient: Id, what: &str) -> String {
         let text = self.printer(&self.fields).factor(coefficient);
         match text.as_str() {
             "1" => what.to_owned(),

@@ -93,11 +93,17 @@ impl Graph {
                 }
                 self.sum(parts)
             }
-            (Node::Base(field, order), Variable::AlongBase) => self.base(*field, order + 1),
+            // The base state depends on y alone.
+            (
+                Node::Base(field, order),
+                Variable::AlongBase | Variable::State(super::Operator::Dy),
+            ) => self.base(*field, order + 1),
             (Node::Base(field, order), Variable::Base(f, o)) if (*field, *order) == (f, o) => {
                 self.one()
             }
-            (Node::BaseLaw(atom), Variable::AlongBase) => self.base_law(atom.dy()),
+            (Node::BaseLaw(atom), Variable::AlongBase | Variable::State(super::Operator::Dy)) => {
+                self.base_law(atom.dy())
+            }
             (Node::Slot(a, p), Variable::Slot(array, position))
                 if (*a, *p) == (array, position) =>
             {

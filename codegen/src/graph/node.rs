@@ -152,6 +152,8 @@ pub enum Node {
     Derivative(Operator, Id),
     /// Input `position` of array `array` of a kernel.
     Slot(usize, usize),
+    /// A base-state symbol of a printed formula that the model knows nothing of: name, subscripts.
+    Symbol(String, String),
 }
 
 impl Node {
@@ -170,7 +172,8 @@ impl Node {
             | Node::Base(..)
             | Node::StateLaw(_)
             | Node::BaseLaw(_)
-            | Node::Slot(..) => {}
+            | Node::Slot(..)
+            | Node::Symbol(..) => {}
         }
     }
 }

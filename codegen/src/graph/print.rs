@@ -91,6 +91,11 @@ impl Printer<'_> {
                 };
                 (notation.call(name, &self.print(*argument)), Binding::Power)
             }
+            Node::Symbol(name, below) => {
+                let marks: Vec<String> = below.chars().map(String::from).collect();
+                let marks: Vec<&str> = marks.iter().map(String::as_str).collect();
+                (notation.symbol(name, "⁰", &marks), Binding::Power)
+            }
             Node::Slot(array, position) => (
                 format!("{}[{position}]", self.slots[*array]),
                 Binding::Power,

@@ -1,6 +1,7 @@
 //! The checked model: names resolved, definitions expanded, every expression a node of one graph.
 
 mod amplitude;
+mod formula;
 mod import;
 mod mistake;
 mod parameter;
@@ -44,6 +45,8 @@ pub struct Model {
     pub outputs: Vec<Output>,
     /// The text of every file that was read; the spec first.
     pub sources: Vec<crate::diagnostic::SourceFile>,
+    /// What its names stand for, for formulas that are read later; without the graph.
+    names: scope::Names,
 }
 
 impl Model {
@@ -64,6 +67,7 @@ pub struct Interval {
     pub upper: Id,
 }
 
+#[derive(Clone)]
 pub struct Parameter {
     pub name: String,
     pub doc: String,

@@ -30,7 +30,11 @@ pub fn resolve(sources: &Sources) -> Result<Model, Diagnostics> {
     };
     match model {
         Some(model) if mistakes.is_empty() => Ok(model),
-        _ => Err(Diagnostics {
+        Some(model) => Err(Diagnostics {
+            files: model.sources,
+            list: mistakes,
+        }),
+        None => Err(Diagnostics {
             files: names.files,
             list: mistakes,
         }),

@@ -58,6 +58,8 @@ pub(super) struct Names {
     pub coordinate: Option<String>,
     expanding: Vec<(usize, String)>,
     expansions: usize,
+    /// Work of the graph that is not the resolver's.
+    pub work_before: usize,
     depth: usize,
     memo: HashMap<(usize, String), Id>,
 }
@@ -86,6 +88,7 @@ impl Names {
             coordinate: None,
             expanding: Vec::new(),
             expansions: 0,
+            work_before: 0,
             depth: 0,
             memo: HashMap::new(),
         }
@@ -105,7 +108,9 @@ impl Names {
 
     pub fn expression(&mut self, expression: &Expression, view: &View) -> Resolved<Id> {
         self.depth += 1;
-        let result = if self.depth > DEEPEST_EXPRESSION || self.graph.work() > MOST_WORK {
+        let result = if self.depth > DEEPEST_EXPRESSION
+            || self.graph.work() - self.work_before > MOST_WORK
+        {
             Err(Diagnostic::new(
                 expression.location.clone(),
                 "the expression is too large",

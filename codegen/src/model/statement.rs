@@ -95,7 +95,7 @@ pub(super) fn model(
         title: tree.title.clone(),
         periodic: names.periodic.clone(),
         interval,
-        parameters: std::mem::take(&mut names.parameters),
+        parameters: names.parameters.clone(),
         fields,
         laws,
         balances,
@@ -106,6 +106,7 @@ pub(super) fn model(
         outputs,
         sources: names.files.clone(),
         graph: std::mem::take(&mut names.graph),
+        names: std::mem::replace(names, Names::new()),
     })
 }
 

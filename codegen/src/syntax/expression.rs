@@ -3,7 +3,7 @@
 //! `syn::Expr` reads `a * b^2 + c` as an exclusive or; this grammar is the mathematician's:
 //! `^` binds tightest and to the right, then unary minus, then `* /`, then `+ -`.
 
-use super::tree::{Binary, Expression, ExpressionKind, Name};
+use super::tree::{Binary, Expression, ExpressionKind, Formula, Name};
 use super::{Reader, spaced};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::graph::Rational;
@@ -17,6 +17,26 @@ type Parsed<T> = Result<T, Diagnostic>;
 const LARGEST_EXPONENT: u32 = 400;
 
 impl Reader {
+    /// formula := sum ('=' sum)?
+    pub(super) fn formula(&self, input: ParseStream) -> Option<Formula> {
+        let read = || {
+            let left = self.expression(input)?;
+            let right = if input.peek(Token![=]) {
+                self.skip(input);
+                Some(self.expression(input)?)
+            } else {
+                None
+            };
+            self.finished(input, "an operator or `=`")?;
+            Ok(Formula { left, right })
+        };
+        let formula = read();
+        if formula.is_err() {
+            self.drain(input);
+        }
+        formula.map_err(|mistake| self.report(mistake)).ok()
+    }
+
     /// sum := product (('+' | '-') product)*
     pub(super) fn expression(&self, input: ParseStream) -> Parsed<Expression> {
         let mut left = self.product(input)?;

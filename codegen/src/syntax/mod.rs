@@ -13,7 +13,7 @@ use crate::diagnostic::{Diagnostic, Location};
 use std::cell::RefCell;
 use syn::ext::IdentExt;
 use syn::parse::{ParseBuffer, ParseStream, Parser};
-use tree::{LawTree, ModelTree, Name};
+use tree::{Formula, LawTree, ModelTree, Name};
 
 /// Parses a `.model` file; `file` is its index in the list of sources.
 pub fn parse_model(file: usize, text: &str) -> (ModelTree, Vec<Diagnostic>) {
@@ -23,6 +23,11 @@ pub fn parse_model(file: usize, text: &str) -> (ModelTree, Vec<Diagnostic>) {
 /// Parses a `.law` file.
 pub fn parse_laws(file: usize, text: &str) -> (LawTree, Vec<Diagnostic>) {
     parse(file, text, Reader::laws)
+}
+
+/// Parses `left = right`, or an expression alone, as it stands in a printed formula.
+pub fn parse_formula(text: &str) -> (Option<Formula>, Vec<Diagnostic>) {
+    parse(0, text, Reader::formula)
 }
 
 fn parse<T: Default>(

@@ -48,6 +48,13 @@ pub struct Equation {
     pub location: Location,
 }
 
+/// A printed formula: an equation, or an expression alone.
+#[derive(Clone, Debug)]
+pub struct Formula {
+    pub left: Expression,
+    pub right: Option<Expression>,
+}
+
 /// A parsed `.model` file.
 #[derive(Clone, Debug, Default)]
 pub struct ModelTree {

@@ -25,7 +25,7 @@ pub enum Command {
     Check { file: PathBuf },
     /// Print the derived operators.
     #[command(
-        after_help = "Examples:\n  landau explain my.model --operator adjoint\n  landau explain my.model --format latex"
+        after_help = "Examples:\n  landau explain my.model --operator adjoint\n  landau explain my.model --format latex\n  landau explain my.model --against errata/mine.toml"
     )]
     Explain {
         /// A built model, or the path of a .model file.
@@ -35,6 +35,9 @@ pub enum Command {
         operator: Option<OperatorName>,
         #[arg(long, value_enum, default_value = "text")]
         format: Format,
+        /// Compare the printed formulas of this file with the derivation, term by term.
+        #[arg(long, value_name = "FILE", conflicts_with = "operator")]
+        against: Option<PathBuf>,
     },
     /// Solve for the base state and print its profiles.
     #[command(after_help = "Example: landau base my.model --set S=400 --set H=auto --points 21")]

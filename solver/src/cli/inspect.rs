@@ -3,13 +3,14 @@
 use super::arguments::{Format, OperatorName};
 use crate::error::{Error, Result};
 use crate::model::Model;
-use crate::reproduce::Formulas;
+use crate::reproduce::{Errata, Formulas, all_explained};
 use landau_codegen::Sources;
 use landau_codegen::build::read_sources;
 use landau_codegen::derive::Derivation;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::text::{self, Section};
 use landau_codegen::generate;
+use landau_codegen::graph::{Latex, Notation, Plain};
 use serde_json::json;
 use std::path::Path;
 
@@ -82,6 +83,49 @@ pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format
     Ok(())
 }
 
+/// The printed formulas of a file beside the derivation.
+///
+/// # Errors
+/// A difference that the file does not explain.
+pub fn explain_against(model: &dyn Model, file: &Path, format: Format) -> Result<()> {
+    let notation: &dyn Notation = match format {
+        Format::Text => &Plain,
+        Format::Latex => &Latex,
+    };
+    let errata = Errata::read(file)?;
+    let judgements = errata.judge(&mut derive(model)?, notation)?;
+    say!("{}", errata.source);
+    for judgement in &judgements {
+        let (terms, wrong) = (judgement.terms, judgement.differences.len());
+        let verdict = match wrong {
+            0 => "agrees".to_owned(),
+            _ => format!("{wrong} of {terms} terms differ"),
+        };
+        say!("{} ({}): {verdict}", judgement.number, judgement.about);
+        for [printed, derived] in &judgement.differences {
+            say!("    printed {printed}, derived {derived}");
+        }
+        for slip in &judgement.slips {
+            let why = match slip.why.as_str() {
+                "" => String::new(),
+                why => format!(": {why}"),
+            };
+            let verdict = slip.verdict.words();
+            say!(
+                "  `{}` for `{}`, {verdict}{why}",
+                slip.printed,
+                slip.derived
+            );
+        }
+        if let Some(open) = &judgement.unexplained {
+            say!("  not explained: {open}");
+        }
+    }
+    let agree = judgements.iter().filter(|j| j.differences.is_empty());
+    say!("{} of {} formulas agree", agree.count(), judgements.len());
+    all_explained(&judgements)
+}
+
 /// The derivation of a model from the sources that it carries.
 fn derive(model: &dyn Model) -> Result<Derivation> {
     let mut files = model
@@ -104,9 +148,13 @@ fn derive(model: &dyn Model) -> Result<Derivation> {
     Ok(derivation)
 }
 
-/// All sections of the derived operators in LaTeX.
-pub fn formulas(model: &dyn Model) -> Result<Formulas> {
-    let derivation = derive(model)?;
+/// All sections of the derived operators in LaTeX, and printed formulas beside them.
+pub fn formulas(model: &dyn Model, errata: Option<&Errata>) -> Result<Formulas> {
+    let mut derivation = derive(model)?;
+    let errata = match errata {
+        Some(errata) => errata.judge(&mut derivation, &Latex)?,
+        None => Vec::new(),
+    };
     let title = |section: &Section| match section {
         Section::Base => "Base state".to_owned(),
         Section::Linear => "Linear operator".to_owned(),
@@ -117,5 +165,6 @@ pub fn formulas(model: &dyn Model) -> Result<Formulas> {
     let sections = sections.map(|s| (title(&s), text::latex(&derivation, s)));
     Ok(Formulas {
         sections: sections.collect(),
+        errata,
     })
 }

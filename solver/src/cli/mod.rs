@@ -56,7 +56,11 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
             model,
             operator,
             format,
-        } => library.with_model(&model, |model| inspect::explain(model, operator, format)),
+            against,
+        } => library.with_model(&model, |model| match &against {
+            Some(file) => inspect::explain_against(model, file, format),
+            None => inspect::explain(model, operator, format),
+        }),
         Command::Base {
             model,
             points,

@@ -4,7 +4,7 @@ use super::inspect;
 use super::solve::progress;
 use crate::error::{Error, Result};
 use crate::library::Library;
-use crate::reproduce::{Study, Workshop};
+use crate::reproduce::{Errata, Study, Workshop};
 use serde_json::json;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,11 +15,19 @@ pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool
         None => only_study()?,
     };
     let study = Study::read(&path)?;
-    let formulas = library.with_model(&study.model, inspect::formulas)?;
+    let home = path.parent().unwrap_or(Path::new(".")).to_owned();
+    let errata = study
+        .errata
+        .as_ref()
+        .map(|file| Errata::read(&home.join(file)));
+    let errata = errata.transpose()?;
+    let formulas = library.with_model(&study.model, |model| {
+        inspect::formulas(model, errata.as_ref())
+    })?;
     let shop = Workshop {
         library,
         study: &study,
-        home: path.parent().unwrap_or(Path::new(".")).to_owned(),
+        home,
         out: out.to_owned(),
     };
     let numbers = shop.run(&formulas, &progress("reproducing"))?;

@@ -4,11 +4,13 @@
 //! `report` (HTML, JSON). A figure that is finished is kept beside the report, so that an
 //! interrupted run goes on where it was.
 
+mod errata;
 mod outcome;
 mod report;
 mod study;
 mod task;
 
+pub use errata::{Errata, Judgement, all_explained};
 pub use outcome::{Number, Outcome, Picture, Table};
 pub use report::Formulas;
 pub use study::Study;

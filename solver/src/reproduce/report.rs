@@ -1,6 +1,7 @@
 //! The report: one HTML page that opens from disk, pictures and data beside it.
 
 use super::Workshop;
+use super::errata::Judgement;
 use super::outcome::{Number, Outcome};
 use crate::error::{Error, Result};
 use crate::study::sweep::write_whole;
@@ -11,6 +12,8 @@ use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
 /// Sections of derived operators: a title, then rows of LaTeX.
 pub struct Formulas {
     pub sections: Vec<(String, Vec<String>)>,
+    /// Printed formulas beside the derivation, terms in LaTeX.
+    pub errata: Vec<Judgement>,
 }
 
 const STYLE: &str = "
@@ -20,7 +23,8 @@ nav { columns: 2; font-size: 0.9rem } figure { margin: 1.5rem 0; overflow-x: aut
 figcaption { font-size: 0.9rem; color: #444 } table { border-collapse: collapse; font-size: 0.9rem }
 th, td { padding: 0.2rem 0.8rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
 td.number { font-variant-numeric: tabular-nums; text-align: right } .failure { color: #a33 }
-.formula { overflow-x: auto; overflow-y: hidden; padding: 0.3rem 0 } .formula math { text-align: left; margin: 0 }";
+.formula { overflow-x: auto; overflow-y: hidden; padding: 0.3rem 0 } .formula math { text-align: left; margin: 0 }
+td p { margin: 0 } td math { text-align: left } summary { cursor: pointer }";
 
 pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) -> Result<()> {
     let study = shop.study;
@@ -77,9 +81,11 @@ pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) 
                     @for figure in &study.figure {
                         div { a href=(format!("#figure-{}", figure.id)) { "Figure " (figure.id) } " " (figure.title) }
                     }
+                    @if !formulas.errata.is_empty() { div { a href="#errata" { "The printed formulas" } } }
                     @if !formulas.sections.is_empty() { div { a href="#formulas" { "The derived operators" } } }
                 }
                 @for section in &sections { (section) }
+                @if !formulas.errata.is_empty() { (errata(&formulas.errata)?) }
                 @if !formulas.sections.is_empty() { (operators(formulas)?) }
             }
         }
@@ -137,6 +143,63 @@ fn operators(formulas: &Formulas) -> Result<Markup> {
             }
         }
     })
+}
+
+/// Each printed formula: whether it agrees, and if not, why.
+fn errata(judgements: &[Judgement]) -> Result<Markup> {
+    let mut rows = Vec::new();
+    for judgement in judgements {
+        let mut differences = Vec::new();
+        for [printed, derived] in &judgement.differences {
+            differences.push([mathml(printed)?, mathml(derived)?]);
+        }
+        rows.push(html! {
+            tr {
+                td { (judgement.number) }
+                td { (judgement.about) }
+                td {
+                    @if differences.is_empty() { "agrees" } @else {
+                        (erratum(judgement))
+                        details {
+                            summary { (differences.len()) " of " (judgement.terms) " terms differ" }
+                            table {
+                                thead { tr { th { "Printed" } th { "Derived" } } }
+                                tbody { @for [printed, derived] in &differences {
+                                    tr { td { (PreEscaped(printed)) } td { (PreEscaped(derived)) } }
+                                } }
+                            }
+                        }
+                    }
+                    @if let Some(open) = &judgement.unexplained { p.failure { "Not explained: " (open) } }
+                }
+            }
+        });
+    }
+    let agree = judgements.iter().filter(|j| j.differences.is_empty());
+    Ok(html! {
+        section id="errata" {
+            h2 { "The printed formulas" }
+            p { (agree.count()) " of " (judgements.len()) " printed formulas agree with the derivation, term by term. "
+                "Of each other one the slips are named: mended, all of them together, the formula agrees, and with any "
+                "one left it does not. Letters with a nought are base values; in L, N2, N3 and the conditions the others "
+                "are perturbations, in L† adjoint fields." }
+            table {
+                thead { tr { th { "Formula" } th { "About" } th { "Comparison" } } }
+                tbody { @for row in &rows { (row) } }
+            }
+        }
+    })
+}
+
+/// The slips of a formula, one sentence each.
+fn erratum(judgement: &Judgement) -> Markup {
+    html! {
+        @for slip in &judgement.slips {
+            p { "printed " code { (slip.printed) } ", derived " code { (slip.derived) } ": "
+                strong { (slip.verdict.words()) }
+                @if !slip.why.is_empty() { " (" (slip.why) ")" } }
+        }
+    }
 }
 
 fn mathml(latex: &str) -> Result<String> {

@@ -19,6 +19,8 @@ pub struct Study {
     pub resolution: usize,
     #[serde(default)]
     pub introduction: String,
+    /// A file of printed formulas to compare with the derivation, relative to the study file.
+    pub errata: Option<String>,
     pub figure: Vec<Figure>,
 }
 

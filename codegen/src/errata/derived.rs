@@ -1,0 +1,186 @@
+//! What was derived, as one expression a subject.
+
+use super::{Formula, Subject};
+use crate::derive::{Case, Derivation, Form};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, nearest};
+use crate::graph::{Graph, Id, Jet, Rational};
+use num_traits::One;
+
+type Found<T> = Result<T, Diagnostics>;
+
+/// The values of parameters, and the branches of switches, that a formula is read for.
+pub(super) type Setting = Vec<(usize, Value)>;
+
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Number(Rational),
+    Choice(usize),
+}
+
+/// The derived side of a formula.
+pub(super) fn subject(derivation: &mut Derivation, formula: &Formula) -> Found<Id> {
+    let named = |what: &str, name: &str, names: &[String]| {
+        let found = names.iter().position(|n| n == name);
+        found.ok_or_else(|| absent(formula, what, name, names))
+    };
+    let model = &derivation.model;
+    let balances: Vec<String> = model.balances.iter().map(|b| b.name.clone()).collect();
+    let laws: Vec<String> = model.laws.iter().map(|l| l.name.clone()).collect();
+    let fields = model.field_names();
+    let balance = |name: &str| named("balance", name, &balances);
+    let field = |name: &str| named("field", name, &fields);
+    let paired = |name: &str| {
+        let field = field(name)?;
+        let row = derivation
+            .operators
+            .pairing
+            .iter()
+            .position(|&f| f == field);
+        row.ok_or_else(|| absent(formula, "balance paired with", name, &fields))
+    };
+    let operators = &derivation.operators;
+    let form = match &formula.subject {
+        Subject::Balance(name) => return Ok(model.balances[balance(name)?].residual),
+        Subject::Law(name) => return Ok(model.laws[named("law", name, &laws)?].body),
+        Subject::Base(name) => {
+            let balance = balance(name)?;
+            let row = operators.base.iter().find(|row| row.balance == balance);
+            let row = row.ok_or_else(|| absent(formula, "base-state balance", name, &[]))?;
+            return Ok(row.residual);
+        }
+        Subject::Linear(row, column) => {
+            let (row, column) = (balance(row)?, field(column)?);
+            let terms = operators.linear.iter().filter(|t| t.row == row);
+            let terms = terms.filter(|t| usize::from(t.jet.field) == column && t.jet.t == 0);
+            terms.map(|t| (vec![t.jet], t.coefficient)).collect()
+        }
+        Subject::Adjoint(row, column) => {
+            let (row, column) = (field(row)?, paired(column)?);
+            let terms = operators.adjoint.iter().filter(|t| t.row == row);
+            let terms = terms.filter(|t| usize::from(t.jet.field) == column && t.jet.t == 0);
+            let named = |jet: Jet| in_fields(&operators.pairing, jet);
+            terms.map(|t| (vec![named(t.jet)], t.coefficient)).collect()
+        }
+        Subject::Nonlinear(degree, row) => {
+            let row = balance(row)?;
+            let degrees = 2..=operators.order;
+            if !degrees.contains(degree) {
+                return Err(absent(
+                    formula,
+                    "operator of degree",
+                    &degree.to_string(),
+                    &[],
+                ));
+            }
+            operators.nonlinear[degree - 2][row].terms.clone()
+        }
+        Subject::Condition(end, name) => {
+            let (case, field) = (case(derivation, formula)?, field(name)?);
+            let mut all = case.conditions.iter();
+            let found = all.find(|c| c.end == *end && c.field == field);
+            let found =
+                found.ok_or_else(|| absent(formula, "condition at this end on", name, &[]))?;
+            found.form.terms.clone()
+        }
+        Subject::AdjointCondition(end, name) => {
+            let (case, row) = (case(derivation, formula)?, paired(name)?);
+            let all = case.adjoint.as_deref().unwrap_or_default();
+            let mut all = all.iter();
+            let found = all.find(|c| c.end == *end && c.balance == row);
+            let found = found
+                .ok_or_else(|| absent(formula, "adjoint condition at this end on", name, &[]))?;
+            let mut form = Form::default();
+            for (jet, symbol) in &found.combination {
+                for (&(x, absx), &coefficient) in symbol {
+                    let jet = in_fields(&operators.pairing, Jet { x, absx, ..*jet });
+                    form.terms.insert(vec![jet], coefficient);
+                }
+            }
+            form.terms
+        }
+    };
+    let form = Form { terms: form };
+    Ok(expression(&mut derivation.model.graph, &form))
+}
+
+/// An adjoint jet counts balances; here it is named by the field that its balance goes with.
+fn in_fields(pairing: &[usize], jet: Jet) -> Jet {
+    Jet {
+        field: pairing[usize::from(jet.field)] as u8,
+        ..jet
+    }
+}
+
+/// Σ coefficient · Π jets.
+fn expression(graph: &mut Graph, form: &Form) -> Id {
+    let mut parts = Vec::new();
+    for (monomial, &coefficient) in &form.terms {
+        let mut factors = vec![(coefficient, Rational::one())];
+        factors.extend(
+            monomial
+                .iter()
+                .map(|&jet| (graph.jet(jet), Rational::one())),
+        );
+        parts.push((graph.product(factors), Rational::one()));
+    }
+    graph.sum(parts)
+}
+
+/// The case of the switches that the formula is set in: the default choices where it says nothing.
+fn case<'d>(derivation: &'d Derivation, formula: &Formula) -> Found<&'d Case> {
+    let setting = setting(derivation, formula)?;
+    let operators = &derivation.operators;
+    let chosen = |switch: usize| {
+        let set = setting.iter().find_map(|(parameter, value)| match value {
+            Value::Choice(choice) if *parameter == switch => Some(*choice),
+            _ => None,
+        });
+        set.unwrap_or(derivation.model.parameters[switch].default as usize)
+    };
+    let wanted: Vec<usize> = operators.switches.iter().map(|&s| chosen(s)).collect();
+    let found = operators.cases.iter().find(|c| c.choices == wanted);
+    found.ok_or_else(|| absent(formula, "case of", "these switches", &[]))
+}
+
+/// The formula's parameters by index.
+pub(super) fn setting(derivation: &Derivation, formula: &Formula) -> Found<Setting> {
+    let parameters = &derivation.model.parameters;
+    let names: Vec<String> = parameters.iter().map(|p| p.name.clone()).collect();
+    let mut setting = Setting::new();
+    for (name, value) in &formula.setting {
+        let index = names.iter().position(|n| n == name);
+        let index = index.ok_or_else(|| absent(formula, "parameter", name, &names))?;
+        let choices = &parameters[index].choices;
+        let value = match choices.iter().position(|c| c == value) {
+            Some(choice) => Value::Choice(choice),
+            None => {
+                let number = value.parse::<i64>().ok().filter(|_| choices.is_empty());
+                let what = format!("value of `{name}`");
+                let number = number.ok_or_else(|| absent(formula, &what, value, choices))?;
+                Value::Number(Rational::from_integer(number.into()))
+            }
+        };
+        setting.push((index, value));
+    }
+    Ok(setting)
+}
+
+/// A subject that the model does not have.
+fn absent(formula: &Formula, what: &str, name: &str, known: &[String]) -> Diagnostics {
+    let place = Location {
+        file: 0,
+        range: 0..0,
+    };
+    let expected = match known {
+        [] => "another subject".to_owned(),
+        names => format!("one of {}", names.join(", ")),
+    };
+    let near = nearest(name, known.iter().map(String::as_str));
+    let message = format!("this formula is about a {what} `{name}`, which there is none of");
+    let mistake = Diagnostic::new(place, message, expected)
+        .maybe_hint(near.map(|n| format!("did you mean `{n}`?")));
+    Diagnostics {
+        files: vec![formula.source.clone()],
+        list: vec![mistake],
+    }
+}

@@ -1,0 +1,195 @@
+//! A printed formula against the derivation: term by term, exactly.
+//!
+//! Both sides become polynomials in the fields' derivatives; a term is a product of these, and it
+//! agrees when the difference of the two coefficients vanishes identically, laws left opaque and
+//! total derivatives such as p⁰_y opened by the chain rule.
+
+mod derived;
+mod terms;
+
+use crate::derive::{Derivation, Form, Monomial};
+use crate::diagnostic::{Diagnostics, SourceFile};
+use crate::graph::{Graph, Id, Node, Rational};
+use crate::model::End;
+use num_traits::One;
+use std::collections::BTreeSet;
+
+/// What a printed formula is about. Balances, fields and laws by name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A balance in the full state.
+    Balance(String),
+    /// A constitutive law; its fields are the arguments.
+    Law(String),
+    /// A balance of the base state.
+    Base(String),
+    /// The entry of L in this balance, acting on this field.
+    Linear(String, String),
+    /// The entry of L† in the row of the first field, acting on the adjoint of the second.
+    Adjoint(String, String),
+    /// N of this degree in a balance.
+    Nonlinear(usize, String),
+    /// The condition on a field at an end.
+    Condition(End, String),
+    /// The condition on the adjoint of a field at an end.
+    AdjointCondition(End, String),
+}
+
+impl Subject {
+    /// Whether the formula says that something vanishes, so that a factor means nothing.
+    fn is_equation(&self) -> bool {
+        matches!(
+            self,
+            Subject::Balance(_)
+                | Subject::Base(_)
+                | Subject::Condition(..)
+                | Subject::AdjointCondition(..)
+        )
+    }
+}
+
+/// A printed formula.
+#[derive(Clone, Debug)]
+pub struct Formula {
+    pub subject: Subject,
+    /// Its number, and its text in the notation of the spec; n0, p0_nT are base values.
+    pub source: SourceFile,
+    /// Parameters that the formula has no letter for, with their values or choices.
+    pub setting: Vec<(String, String)>,
+}
+
+/// One term that is not the same.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    pub monomial: Monomial,
+    pub printed: Option<Id>,
+    pub derived: Option<Id>,
+}
+
+/// A printed formula beside the derivation.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Terms that one of the two has.
+    pub terms: usize,
+    pub differences: Vec<Difference>,
+}
+
+/// Abbreviations that printed formulas share, in order: name and text.
+pub type Abbreviations = Vec<(String, String)>;
+
+/// Compares a printed formula with what was derived.
+///
+/// # Errors
+/// A formula that cannot be read, or a subject that the model does not have.
+pub fn compare(
+    derivation: &mut Derivation,
+    abbreviations: &Abbreviations,
+    formula: &Formula,
+) -> Result<Comparison, Diagnostics> {
+    let printed = printed(derivation, abbreviations, &formula.source)?;
+    let derived = derived::subject(derivation, formula)?;
+    let setting = derived::setting(derivation, formula)?;
+    let law = matches!(formula.subject, Subject::Law(_));
+    let mut sides = [printed, derived].map(|id| {
+        let id = terms::carry_out(derivation, id, law);
+        let id = terms::settle(&mut derivation.model.graph, id, &setting);
+        let graph = &mut derivation.model.graph;
+        // A law is one term, whatever it is a function of.
+        if law {
+            Form::constant(graph, id)
+        } else {
+            Form::polynomial(graph, id)
+        }
+    });
+    if formula.subject.is_equation() {
+        let factor = relative_factor(&mut derivation.model.graph, &sides[0], &sides[1]);
+        sides[0] = sides[0].times(&mut derivation.model.graph, factor);
+    }
+    Ok(difference(derivation, &sides[0], &sides[1]))
+}
+
+/// The printed text as an expression.
+fn printed(
+    derivation: &mut Derivation,
+    abbreviations: &Abbreviations,
+    source: &SourceFile,
+) -> Result<Id, Diagnostics> {
+    let mut known = Vec::new();
+    for (name, text) in abbreviations {
+        let source = SourceFile {
+            path: format!("abbreviation {name}"),
+            text: text.clone(),
+        };
+        let id = derivation.model.read(&source, &known)?;
+        known.push((name.clone(), id));
+    }
+    derivation.model.read(source, &known)
+}
+
+/// What the printed side has to be multiplied with: the coefficients of the leading term that both
+/// have, one over the other.
+fn relative_factor(graph: &mut Graph, printed: &Form, derived: &Form) -> Id {
+    let key = |monomial: &&Monomial| {
+        let derivatives = monomial.iter().map(|j| (j.y, j.t, j.x)).max();
+        (monomial.len() == 1, derivatives)
+    };
+    let mut shared: Vec<&Monomial> = derived.terms.keys().collect();
+    shared.retain(|monomial| printed.terms.contains_key(*monomial));
+    match shared.into_iter().max_by_key(key) {
+        Some(monomial) => {
+            let ratio = graph.div(derived.terms[monomial], printed.terms[monomial]);
+            let ratio = graph.collect(ratio);
+            // Of expressions without jets only a sign is taken out.
+            match (monomial.is_empty(), graph.as_number(ratio)) {
+                (true, Some(_)) | (false, _) => ratio,
+                (true, None) => sign(graph, derived.terms[monomial], printed.terms[monomial]),
+            }
+        }
+        None => graph.one(),
+    }
+}
+
+/// The sign by which the second becomes most like the first.
+fn sign(graph: &mut Graph, like: Id, of: Id) -> Id {
+    let size = |graph: &Graph, id: Id| match graph.node(id) {
+        Node::Sum(_, terms) => terms.len(),
+        _ => 1,
+    };
+    let (difference, sum) = (graph.sub(like, of), graph.add(like, of));
+    let value = if size(graph, sum) < size(graph, difference) || graph.is_zero(sum) {
+        -Rational::one()
+    } else {
+        Rational::one()
+    };
+    graph.number(value)
+}
+
+fn difference(derivation: &mut Derivation, printed: &Form, derived: &Form) -> Comparison {
+    let monomials: BTreeSet<&Monomial> = printed.terms.keys().chain(derived.terms.keys()).collect();
+    let mut differences = Vec::new();
+    let (mut terms, zero) = (0, derivation.model.graph.zero());
+    for monomial in monomials {
+        let [left, right] = [printed, derived].map(|side| {
+            let coefficient = side.terms.get(monomial).copied()?;
+            let opened = terms::open_chain(derivation, coefficient);
+            (!derivation.model.graph.vanishes(opened)).then_some((coefficient, opened))
+        });
+        if left.is_none() && right.is_none() {
+            continue;
+        }
+        terms += 1;
+        let opened = |side: Option<(Id, Id)>| side.map_or(zero, |(_, opened)| opened);
+        let graph = &mut derivation.model.graph;
+        let rest = graph.sub(opened(left), opened(right));
+        if !graph.vanishes(rest) {
+            let mut shown =
+                |side: Option<(Id, Id)>| side.map(|(written, _)| graph.collect(written));
+            differences.push(Difference {
+                monomial: monomial.clone(),
+                printed: shown(left),
+                derived: shown(right),
+            });
+        }
+    }
+    Comparison { terms, differences }
+}

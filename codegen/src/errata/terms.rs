@@ -1,0 +1,121 @@
+//! Rewriting both sides of a comparison into the same terms.
+
+use super::derived::{Setting, Value};
+use crate::derive::{self, Derivation, Opener, base_value};
+use crate::graph::{Graph, Id, LawAtom, Node, Variable};
+use crate::model::Law;
+use std::collections::HashMap;
+
+/// Parameters replaced by their values, switches by the branch that they choose.
+pub(super) fn settle(graph: &mut Graph, id: Id, setting: &Setting) -> Id {
+    graph.substitute(id, &mut |graph, node| match node {
+        Node::Parameter(index) => match value(setting, *index)? {
+            Value::Number(number) => Some(graph.number(number.clone())),
+            Value::Choice(_) => None,
+        },
+        Node::Select(switch, branches) => match value(setting, *switch)? {
+            Value::Choice(choice) => Some(settle(graph, branches[*choice], setting)),
+            Value::Number(_) => None,
+        },
+        _ => None,
+    })
+}
+
+fn value(setting: &Setting, parameter: usize) -> Option<&Value> {
+    let found = setting.iter().find(|(index, _)| *index == parameter);
+    found.map(|(_, value)| value)
+}
+
+/// Derivatives carried out, base values that are known put in, laws that do not depend on a field
+/// not differentiated by it. The formula of a law is opened down to parameters.
+pub(super) fn carry_out(derivation: &mut Derivation, id: Id, law: bool) -> Id {
+    let model = &mut derivation.model;
+    let (laws, closed) = (&model.laws, &model.base.closed);
+    let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
+    let graph = &mut model.graph;
+    if law {
+        return Opener::new(laws, closed, &uniform).at_state(graph, id);
+    }
+    let id = derive::carry_out(graph, id, &uniform);
+    let depends = derive::dependence(graph, laws, uniform.len());
+    let explicit = explicit(graph, laws);
+    graph.substitute(id, &mut |graph, node| match node {
+        Node::StateLaw(atom) | Node::BaseLaw(atom) if foreign(atom, &depends) => Some(graph.zero()),
+        Node::StateLaw(atom) if atom.y > 0 && !explicit[atom.law] => Some(graph.zero()),
+        Node::Base(field, order) if closed[*field].is_some() => {
+            Some(base_value(graph, closed, *field, *order))
+        }
+        _ => None,
+    })
+}
+
+/// Whether a law is differentiated by a field that it does not depend on.
+fn foreign(atom: &LawAtom, depends: &[Vec<bool>]) -> bool {
+    let mut index = atom.index.iter().zip(&depends[atom.law]);
+    index.any(|(&order, depends)| order > 0 && !depends)
+}
+
+/// Laws that depend on the coordinate other than through the fields.
+fn explicit(graph: &Graph, laws: &[Law]) -> Vec<bool> {
+    let mut table: Vec<bool> = Vec::with_capacity(laws.len());
+    for law in laws {
+        let depends = graph.any(law.body, |node| match node {
+            Node::Coordinate => true,
+            // A law may use those declared before it.
+            Node::StateLaw(atom) => table[atom.law],
+            _ => false,
+        });
+        table.push(depends);
+    }
+    table
+}
+
+/// Total derivatives of laws along the base state by the chain rule: p⁰_y = p⁰_n n⁰_y + p⁰_T T⁰_y.
+pub(super) fn open_chain(derivation: &mut Derivation, id: Id) -> Id {
+    let model = &mut derivation.model;
+    let graph = &mut model.graph;
+    let depends = derive::dependence(graph, &model.laws, model.fields.len());
+    let explicit = explicit(graph, &model.laws);
+    let closed = &model.base.closed;
+    let mut opened: HashMap<LawAtom, Id> = HashMap::new();
+    graph.substitute(id, &mut |graph, node| match node {
+        Node::BaseLaw(atom) if atom.y > 0 && !explicit[atom.law] => {
+            if let Some(&known) = opened.get(atom) {
+                return Some(known);
+            }
+            let start = LawAtom {
+                y: 0,
+                ..atom.clone()
+            };
+            let mut value = graph.base_law(start);
+            for _ in 0..atom.y {
+                value = along(graph, value, &depends, closed);
+            }
+            opened.insert(atom.clone(), value);
+            Some(value)
+        }
+        _ => None,
+    })
+}
+
+/// d/dy of an expression in laws and base fields.
+fn along(graph: &mut Graph, id: Id, depends: &[Vec<bool>], closed: &[Option<Id>]) -> Id {
+    let slope = graph.differentiate(id, Variable::AlongBase);
+    graph.substitute(slope, &mut |graph, node| match node {
+        Node::BaseLaw(atom) if atom.y == 1 => {
+            let law = LawAtom {
+                y: 0,
+                ..atom.clone()
+            };
+            let mut parts = Vec::new();
+            for field in (0..atom.index.len()).filter(|&f| depends[atom.law][f]) {
+                let partial = graph.base_law(law.partial(field));
+                let gradient = base_value(graph, closed, field, 1);
+                let part = graph.mul(partial, gradient);
+                parts.push((part, num_traits::One::one()));
+            }
+            Some(graph.sum(parts))
+        }
+        _ => None,
+    })
+}

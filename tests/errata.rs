@@ -1,0 +1,123 @@
+//! Printed formulas against the derivation: what agrees, what does not, what is refused.
+
+use crate::support::{Answer, landau};
+use std::fs;
+
+const FILE: &str = "spec/errata/shukla2014.toml";
+
+/// Compares the formulas of a file of errata with the vibrated bed.
+fn against(text: &str) -> Answer {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("printed.toml");
+    fs::write(&file, format!("source = \"a test\"\n{text}")).expect("written");
+    let path = file.to_str().expect("a path");
+    landau(&["explain", "vibrated_bed", "--against", path])
+}
+
+#[test]
+fn the_paper_agrees_or_its_slips_are_proved() {
+    let answer = landau(&["explain", "vibrated_bed", "--against", FILE]);
+    assert_eq!(answer.status, 0, "{}{}", answer.out, answer.err);
+    let verdict = |start: &str| {
+        let mut lines = answer.out.lines();
+        let line = lines.find(|line| line.starts_with(start));
+        line.unwrap_or_else(|| panic!("{start} is not in\n{}", answer.out))
+            .ends_with("agrees")
+    };
+    // P: the square of (2.13) is missing in (2.20), gravity has the wrong sign in (2.8) and (2.18),
+    // (4.7) contradicts (3.4), (6.4) holds y for the fields, l31† has a term too many.
+    for wrong in [
+        "(2.8)",
+        "(2.18)",
+        "(2.20), f4",
+        "(4.7), u' at y = 0",
+        "(6.4), u'",
+        "(6.4), v'",
+        "(6.4), T'",
+        "(A 2), l31†",
+        "(B 3)",
+        "(B 5)",
+        "(B 6)",
+        "(B 7)",
+    ] {
+        assert!(!verdict(wrong), "{wrong} agrees");
+    }
+    for right in [
+        "(2.17)",
+        "(2.19)",
+        "(2.20), f1",
+        "(2.24)",
+        "(3.11), u† at y = 0",
+        "(6.6), T† at y = H",
+        "(A 1), l44",
+        "(A 2), l33†",
+        "(B 2)",
+    ] {
+        assert!(verdict(right), "{right} differs");
+    }
+}
+
+#[test]
+fn a_sign_planted_in_a_printed_formula_is_found() {
+    let entry = |printed: &str| {
+        against(&format!(
+            "[[formula]]\nnumber = \"l22\"\nabout = {{ linear = {{ balance = \"momentum_x\", field = \"u\" }} }}\nprinted = \"{printed}\""
+        ))
+    };
+    let right = entry("1/n0*((2*mu0 + lambda0)*dx(dx(u)) + mu0_y*dy(u) + mu0*dy(dy(u)))");
+    assert_eq!(right.status, 0, "{}", right.err);
+    // The chain rule is seen through.
+    let opened = "(mu0_n*n0_y + mu0_T*T0_y)";
+    let right = entry(&format!(
+        "1/n0*((2*mu0 + lambda0)*dx(dx(u)) + {opened}*dy(u) + mu0*dy(dy(u)))"
+    ));
+    assert_eq!(right.status, 0, "{}", right.err);
+    let wrong = entry("1/n0*((2*mu0 + lambda0)*dx(dx(u)) - mu0_y*dy(u) + mu0*dy(dy(u)))");
+    assert_eq!(wrong.status, 3, "{}", wrong.out);
+    assert!(
+        wrong
+            .out
+            .contains("printed -mu⁰_y/n⁰ u'_y, derived mu⁰_y/n⁰ u'_y"),
+        "{}",
+        wrong.out
+    );
+    assert!(wrong.err.contains("no slip says why"), "{}", wrong.err);
+}
+
+#[test]
+fn a_slip_that_is_none_is_refused() {
+    let text = "[[formula]]\nnumber = \"(2.24)\"\nabout = { base = \"momentum_y\" }\nprinted = \"-dy(p0) - n0/S = 0\"\n[[formula.slip]]\nprinted = \"n0/S\"\nderived = \"1/S*n0\"\nverdict = \"misprint\"";
+    let answer = against(text);
+    assert_eq!(answer.status, 3, "{}", answer.out);
+    assert!(answer.err.contains("`n0/S` is no slip"), "{}", answer.err);
+}
+
+#[test]
+fn a_formula_that_cannot_be_read_is_named() {
+    let cases = [
+        ("{ law = \"kapa\" }", "T", "did you mean `kappa`?"),
+        (
+            "{ base = \"momentum_y\" }",
+            "dy(p0) + n0/(S = 0",
+            "`(` is never closed",
+        ),
+        ("{ base = \"momentum_y\" }", "dy(q0) + n0/S", "`q0`"),
+        ("{ base = \"mass\" }", "n0 = 0", "base-state balance `mass`"),
+        (
+            "{ nonlinear = { degree = 4, balance = \"mass\" } }",
+            "n",
+            "degree `4`",
+        ),
+    ];
+    for (about, printed, expected) in cases {
+        let text =
+            format!("[[formula]]\nnumber = \"(9.9)\"\nabout = {about}\nprinted = \"{printed}\"");
+        let answer = against(&text);
+        assert_eq!(answer.status, 2, "{about} {printed}: {}", answer.out);
+        assert!(
+            answer.err.contains(expected) && answer.err.contains("(9.9)"),
+            "{}",
+            answer.err
+        );
+    }
+}
