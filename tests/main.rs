@@ -7,6 +7,7 @@ mod formulas;
 mod fuzz;
 mod golden;
 mod identities;
+mod latex;
 mod published;
 mod published_bed;
 mod reproduce;

@@ -87,7 +87,7 @@ fn a_study_becomes_a_report() {
         "<math",
         "<table",
         "figure1-1.svg",
-        "figure2-1.npz",
+        "figure2-1-1.npz",
         "Did not come out",
     ] {
         assert!(page.contains(wanted), "{wanted} is not in the page");
@@ -109,7 +109,12 @@ fn a_study_becomes_a_report() {
         read("numbers.json"),
         read("figure1-1.csv"),
     ];
-    for name in ["index.html", "numbers.json", "kept/2.json"] {
+    for name in [
+        "index.html",
+        "numbers.json",
+        "kept/1-2.json",
+        "kept/2-1.json",
+    ] {
         fs::remove_file(out.join(name)).expect(name);
     }
     run(&arguments);

@@ -90,8 +90,8 @@ pub fn nonlinear_row(derivation: &Derivation, degree: usize, row: usize) -> Stri
 }
 
 pub(super) struct Writer<'a> {
-    derivation: &'a Derivation,
-    notation: &'a dyn Notation,
+    pub(super) derivation: &'a Derivation,
+    pub(super) notation: &'a dyn Notation,
     pub(super) fields: Vec<String>,
     /// Adjoint fields by balance.
     adjoint_fields: Vec<String>,
@@ -185,21 +185,29 @@ impl<'a> Writer<'a> {
         columns: &[String],
         time: bool,
     ) {
-        let mut blocks: BTreeMap<(usize, u8), Vec<String>> = BTreeMap::new();
+        let mut blocks: BTreeMap<(usize, u8), Vec<(Id, String)>> = BTreeMap::new();
         let mut sorted: Vec<&Term> = terms.iter().filter(|t| (t.jet.t > 0) == time).collect();
         sorted.sort_by_key(|t| (t.jet.y, t.jet.x, t.jet.absx));
         for term in sorted {
             let operator = self.operator(Jet { t: 0, ..term.jet });
             let block = blocks.entry((term.row, term.jet.field)).or_default();
-            block.push(match operator.as_str() {
-                "" => self.print(term.coefficient),
-                operator => self.scaled(term.coefficient, operator),
-            });
+            block.push((term.coefficient, operator));
         }
         for ((row, column), parts) in blocks {
             let column = self.name(&columns[usize::from(column)]);
             let label = Label::Entry(rows[row].clone(), column);
-            lines.push(Line::Formula(label, signed_sum(parts)));
+            let formula = if self.notation.is_flat() {
+                let parts = parts
+                    .iter()
+                    .map(|(coefficient, operator)| match operator.as_str() {
+                        "" => self.print(*coefficient),
+                        operator => self.scaled(*coefficient, operator),
+                    });
+                signed_sum(parts.collect())
+            } else {
+                self.over_common_denominator(&parts)
+            };
+            lines.push(Line::Formula(label, formula));
         }
     }
 
@@ -367,7 +375,13 @@ impl<'a> Writer<'a> {
         let mut lines = vec![Line::Heading(format!("N{degree}"))];
         for (row, form) in operators.nonlinear[degree - 2].iter().enumerate() {
             let name = Label::Name(model.balances[row].name.clone());
-            lines.push(Line::Formula(name, self.form(form)));
+            let formula = if self.notation.is_flat() || form.terms.is_empty() {
+                self.form(form)
+            } else {
+                let lines = self.grouped_form(form, operators.divisors[row]);
+                self.notation.lines(&lines)
+            };
+            lines.push(Line::Formula(name, formula));
         }
         lines
     }
@@ -401,7 +415,7 @@ impl<'a> Writer<'a> {
 }
 
 /// Joins terms with + and −.
-fn signed_sum(parts: Vec<String>) -> String {
+pub(super) fn signed_sum(parts: Vec<String>) -> String {
     let mut text = String::new();
     for part in parts {
         match (text.is_empty(), part.strip_prefix('-')) {

@@ -5,6 +5,11 @@ use num_traits::Signed;
 
 /// How the pieces of a formula are written.
 pub trait Notation {
+    /// Whether a formula is one line, so that a fraction needs brackets and grouping would hide more
+    /// than it shows.
+    fn is_flat(&self) -> bool;
+    /// A sum that goes on from line to line.
+    fn lines(&self, lines: &[String]) -> String;
     /// A name with a mark (`⁰`, `'` or none; a trailing † belongs to the name) and subscripts.
     fn symbol(&self, name: &str, mark: &str, subscripts: &[&str]) -> String;
     /// ∂ by a coordinate, to a power above 0.
@@ -20,6 +25,7 @@ pub trait Notation {
     fn root(&self, of: &str) -> String;
     fn call(&self, function: &str, argument: &str) -> String;
     fn brackets(&self, inside: &str) -> String;
+    fn square_brackets(&self, inside: &str) -> String;
     fn choice(&self, switch: &str, branches: &[String]) -> String;
     fn integral(&self, integrand: &str, variable: &str) -> String;
 }
@@ -31,6 +37,14 @@ pub struct Plain;
 pub struct Latex;
 
 impl Notation for Plain {
+    fn is_flat(&self) -> bool {
+        true
+    }
+
+    fn lines(&self, lines: &[String]) -> String {
+        lines.join(" + ")
+    }
+
     fn symbol(&self, name: &str, mark: &str, subscripts: &[&str]) -> String {
         match subscripts.concat().as_str() {
             "" => format!("{name}{mark}"),
@@ -90,6 +104,10 @@ impl Notation for Plain {
         format!("({inside})")
     }
 
+    fn square_brackets(&self, inside: &str) -> String {
+        format!("[{inside}]")
+    }
+
     fn choice(&self, switch: &str, branches: &[String]) -> String {
         format!("select({switch}; {})", branches.join(", "))
     }
@@ -107,6 +125,24 @@ const GREEK: [&str; 23] = [
 ];
 
 impl Notation for Latex {
+    fn is_flat(&self) -> bool {
+        false
+    }
+
+    fn lines(&self, lines: &[String]) -> String {
+        let mut text = String::from("\\begin{aligned}");
+        for (index, line) in lines.iter().enumerate() {
+            let line = match line.strip_prefix('-') {
+                Some(rest) => format!("-\\,{rest}"),
+                None if index > 0 => format!("+\\,{line}"),
+                None => line.clone(),
+            };
+            let end = if index > 0 { " \\\\ " } else { " " };
+            text += &format!("{end}& {line}");
+        }
+        text + " \\end{aligned}"
+    }
+
     fn symbol(&self, name: &str, mark: &str, subscripts: &[&str]) -> String {
         let (name, dagger) = match name.strip_suffix('†') {
             Some(name) => (name, "\\dagger"),
@@ -174,6 +210,10 @@ impl Notation for Latex {
     }
 
     fn power(&self, base: &str, exponent: &Rational) -> String {
+        // n'²
+        if let Some(name) = base.strip_suffix("^{\\prime}") {
+            return format!("{name}^{{\\prime {}}}", self.number(exponent));
+        }
         // A symbol that has a superscript already.
         let base = match base.contains('^') && !base.ends_with("\\right)") {
             true => self.brackets(base),
@@ -200,6 +240,10 @@ impl Notation for Latex {
 
     fn brackets(&self, inside: &str) -> String {
         format!("\\left({inside}\\right)")
+    }
+
+    fn square_brackets(&self, inside: &str) -> String {
+        format!("\\left[{inside}\\right]")
     }
 
     fn choice(&self, switch: &str, branches: &[String]) -> String {

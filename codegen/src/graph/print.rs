@@ -165,13 +165,18 @@ impl Printer<'_> {
         }
     }
 
-    fn product(&self, factors: &[(Id, Rational)]) -> String {
+    /// Π base^exponent, negative powers below a fraction bar.
+    pub fn product(&self, factors: &[(Id, Rational)]) -> String {
+        let fraction = factors.iter().any(|(_, e)| e.is_negative());
         let side = |negative: bool| -> Vec<String> {
-            factors
-                .iter()
-                .filter(|(_, e)| e.is_negative() == negative)
-                .map(|(base, e)| self.power(*base, &e.abs()))
-                .collect()
+            let side = factors.iter().filter(|(_, e)| e.is_negative() == negative);
+            match side.clone().collect::<Vec<_>>().as_slice() {
+                // The bar of a fraction is bracket enough.
+                [(base, e)] if e.abs().is_one() && fraction && !self.notation.is_flat() => {
+                    vec![self.print(*base)]
+                }
+                _ => side.map(|(base, e)| self.power(*base, &e.abs())).collect(),
+            }
         };
         let (above, below) = (side(false), side(true));
         let numerator = if above.is_empty() {

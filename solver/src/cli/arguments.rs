@@ -115,7 +115,7 @@ pub enum Command {
     },
     /// Work through a study file: figures, numbers beside the printed ones, a report in HTML.
     #[command(
-        after_help = "Examples:\n  landau reproduce --out report\n  landau reproduce my/studies/mine.toml --out report\n\nWithout a file, the only one in a folder `studies` here or one level below is taken.\nAn interrupted run goes on with the figure where it was."
+        after_help = "Examples:\n  landau reproduce --out report\n  landau reproduce my/studies/mine.toml --out report\n\nWithout a file, the only one in a folder `studies` here or one level below is taken.\nAn interrupted run goes on with the task where it was."
     )]
     Reproduce {
         /// A study file.

@@ -1,7 +1,7 @@
 //! A study file worked through: figures, numbers beside the printed ones, a report.
 //!
 //! `study` (the file) → `task` (what is computed) → `outcome` (pictures, tables, numbers) →
-//! `report` (HTML, JSON). A figure that is finished is kept beside the report, so that an
+//! `report` (HTML, JSON). A task that is finished is kept beside the report, so that an
 //! interrupted run goes on where it was.
 
 mod errata;
@@ -22,7 +22,7 @@ use crate::study::sweep::write_whole;
 use indicatif::ProgressBar;
 use std::fs;
 use std::path::{Path, PathBuf};
-use study::{Case, Figure};
+use study::{Case, Task};
 
 /// Where a study is worked on.
 pub struct Workshop<'a> {
@@ -43,13 +43,20 @@ impl Workshop<'_> {
         let kept = self.out.join("kept");
         fs::create_dir_all(&kept)
             .map_err(|e| Error::input(format!("{} cannot be made: {e}", kept.display())))?;
-        progress.set_length(self.study.figure.len() as u64);
+        let tasks = self.study.figure.iter().map(|figure| figure.task.len());
+        progress.set_length(tasks.sum::<usize>() as u64);
         let mut outcomes = Vec::new();
         for figure in &self.study.figure {
             progress.set_prefix(format!("figure {}", figure.id));
-            progress.tick();
-            outcomes.push(self.figure(figure, &kept)?);
-            progress.inc(1);
+            let mut outcome = Outcome::default();
+            for (index, task) in figure.task.iter().enumerate() {
+                progress.tick();
+                let stem = format!("{}-{}", figure.id, index + 1);
+                let path = kept.join(format!("{stem}.json"));
+                outcome.add(self.task(&figure.id, &stem, task, &path)?);
+                progress.inc(1);
+            }
+            outcomes.push(outcome);
         }
         progress.finish_and_clear();
         let numbers: Vec<Number> = outcomes.iter().flat_map(|o| o.numbers.clone()).collect();
@@ -60,37 +67,34 @@ impl Workshop<'_> {
         Ok(numbers)
     }
 
-    /// One figure, from an earlier run where that has finished it.
-    fn figure(&self, figure: &Figure, kept: &Path) -> Result<Outcome> {
-        let path = kept.join(format!("{}.json", figure.id));
-        let key = self.key(figure)?;
-        if let Ok(text) = fs::read_to_string(&path)
+    /// One task, from an earlier run where that has finished it.
+    fn task(&self, figure: &str, stem: &str, task: &Task, path: &Path) -> Result<Outcome> {
+        let key = self.key(stem, task)?;
+        if let Ok(text) = fs::read_to_string(path)
             && let Ok((known, outcome)) = serde_json::from_str::<(String, Outcome)>(&text)
             && known == key
+            && outcome.files().all(|file| self.out.join(file).is_file())
         {
             return Ok(outcome);
         }
-        let mut outcome = Outcome::default();
-        for task in &figure.task {
-            outcome.add(task::run(self, &figure.id, task)?);
-        }
+        let outcome = task::run(self, figure, stem, task)?;
         let text = serde_json::to_string(&(key, &outcome))
             .map_err(|e| Error::computation(e.to_string()))?;
-        write_whole(&path, text.as_bytes())?;
+        write_whole(path, text.as_bytes())?;
         Ok(outcome)
     }
 
-    /// What a kept figure must have been made from.
-    fn key(&self, figure: &Figure) -> Result<String> {
-        let spec = serde_json::to_string(figure).map_err(|e| Error::computation(e.to_string()))?;
+    /// What a kept task must have been made from.
+    fn key(&self, stem: &str, task: &Task) -> Result<String> {
+        let spec = serde_json::to_string(task).map_err(|e| Error::computation(e.to_string()))?;
         let mut hashes = Vec::new();
-        for case in figure.task.iter().flat_map(task::cases) {
+        for case in task::cases(task) {
             hashes.push(self.with_setup(case, |setup| Ok(setup.hash()))?);
         }
         hashes.dedup();
         let version = env!("CARGO_PKG_VERSION");
         Ok(format!(
-            "{spec} {} {} {version}",
+            "{stem} {spec} {} {} {version}",
             hashes.join(" "),
             self.study.resolution
         ))

@@ -39,6 +39,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Files that the pictures came with.
+    pub fn files(&self) -> impl Iterator<Item = &String> {
+        self.pictures.iter().flat_map(|picture| &picture.files)
+    }
+
     pub fn add(&mut self, other: Outcome) {
         self.pictures.extend(other.pictures);
         self.numbers.extend(other.numbers);

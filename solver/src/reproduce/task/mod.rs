@@ -11,8 +11,8 @@ use super::study::{Case, Task};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
 
-/// Computes one task of a figure.
-pub(super) fn run(shop: &Workshop, figure: &str, task: &Task) -> Result<Outcome> {
+/// Computes one task of a figure; files that it writes itself begin with `stem`.
+pub(super) fn run(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outcome> {
     match task {
         Task::Profiles {
             case,
@@ -56,7 +56,16 @@ pub(super) fn run(shop: &Workshop, figure: &str, task: &Task) -> Result<Outcome>
             shade,
             arrows,
             wavelengths,
-        } => planes::pattern(shop, figure, case, shade, arrows.as_ref(), *wavelengths),
+        } => {
+            let wanted = planes::Wanted {
+                figure,
+                stem,
+                shade,
+                arrows: arrows.as_ref(),
+                wavelengths: *wavelengths,
+            };
+            planes::pattern(shop, case, &wanted)
+        }
         Task::Circulation {
             case,
             over,

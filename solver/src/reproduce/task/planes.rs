@@ -36,22 +36,26 @@ fn field(found: &Pattern, name: &str) -> Result<usize> {
     found.field(name).ok_or_else(missing)
 }
 
-pub(super) fn pattern(
-    shop: &Workshop,
-    figure: &str,
-    cases: &[Case],
-    shade: &str,
-    arrows: Option<&[String; 2]>,
-    wavelengths: f64,
-) -> Result<Outcome> {
+/// What a picture of a pattern is to show, and where it belongs.
+pub(super) struct Wanted<'a> {
+    pub figure: &'a str,
+    /// How the names of its files begin.
+    pub stem: &'a str,
+    pub shade: &'a str,
+    pub arrows: Option<&'a [String; 2]>,
+    pub wavelengths: f64,
+}
+
+pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<Outcome> {
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
         let k = case.k.ok_or_else(missing)?;
         shop.with_setup(case, |setup| {
-            let found = at_equilibrium(setup, k, DRAWN, wavelengths)?;
-            let shade = field(&found, shade)?;
-            let arrows = arrows
+            let found = at_equilibrium(setup, k, DRAWN, wanted.wavelengths)?;
+            let shade = field(&found, wanted.shade)?;
+            let arrows = wanted
+                .arrows
                 .map(|[u, v]| Ok::<_, Error>([field(&found, u)?, field(&found, v)?]))
                 .transpose()?;
             let svg = pattern_pair(setup.model.structure(), &found, shade, arrows);
@@ -65,7 +69,7 @@ pub(super) fn pattern(
         let case = &cases[index];
         let mut files = Vec::new();
         for extension in ["npz", "nc"] {
-            let name = format!("figure{figure}-{}.{extension}", index + 1);
+            let name = format!("figure{}-{}.{extension}", wanted.stem, index + 1);
             data.write(&shop.out.join(&name))?;
             files.push(name);
         }
@@ -76,7 +80,7 @@ pub(super) fn pattern(
             files,
         });
         outcome.numbers.push(Number {
-            figure: figure.to_owned(),
+            figure: wanted.figure.to_owned(),
             quantity: named(case, "A_e"),
             ours: Some(amplitude),
             printed: case.printed.get("A_e").copied(),
