@@ -83,14 +83,8 @@ impl Writer<'_> {
 
     /// A row of N, a line an item.
     pub(super) fn grouped_form(&self, form: &Form, divisor: Id) -> Vec<String> {
-        let mut lines: Vec<((bool, Option<usize>), Vec<Piece>)> = Vec::new();
-        for piece in self.pieces(form, divisor) {
-            let key = (piece.divided, piece.law);
-            match lines.iter_mut().find(|(known, _)| *known == key) {
-                Some((_, pieces)) => pieces.push(piece),
-                None => lines.push((key, vec![piece])),
-            }
-        }
+        let keyed = self.pieces(form, divisor).into_iter();
+        let mut lines = gather(keyed.map(|piece| ((piece.divided, piece.law), piece)));
         lines.sort_by_key(|(key, _)| *key);
         let lines = lines.into_iter().map(|((divided, law), pieces)| {
             let parts = match law {
@@ -190,15 +184,9 @@ impl Writer<'_> {
 
     /// Pieces of one law: equal outer parts together, then equal expansions.
     fn by_expansion(&self, pieces: Vec<Piece>) -> Vec<String> {
-        let mut by_outer: Vec<(Outer, Vec<Scaled<Expansion>>)> = Vec::new();
-        for piece in pieces {
-            let scaled = (piece.number, piece.inner);
-            match by_outer.iter_mut().find(|(outer, _)| *outer == piece.outer) {
-                Some((_, inner)) => inner.push(scaled),
-                None => by_outer.push((piece.outer, vec![scaled])),
-            }
-        }
-        let mut by_inner: Vec<(Vec<Scaled<Expansion>>, Vec<Scaled<Outer>>)> = Vec::new();
+        let keyed = pieces.into_iter();
+        let by_outer = gather(keyed.map(|piece| (piece.outer, (piece.number, piece.inner))));
+        let mut keyed = Vec::new();
         for (outer, mut inner) in by_outer {
             inner.sort_by(|a, b| a.1.cmp(&b.1));
             let largest = inner.iter().map(|(number, _)| number.abs()).max();
@@ -207,11 +195,9 @@ impl Writer<'_> {
                 scale = -scale;
             }
             inner.iter_mut().for_each(|(number, _)| *number /= &scale);
-            match by_inner.iter_mut().find(|(known, _)| *known == inner) {
-                Some((_, outers)) => outers.push((scale, outer)),
-                None => by_inner.push((inner, vec![(scale, outer)])),
-            }
+            keyed.push((inner, (scale, outer)));
         }
+        let by_inner = gather(keyed.into_iter());
         let shown = by_inner
             .iter()
             .map(|(inner, outers)| self.group(inner, outers));
@@ -304,6 +290,18 @@ impl Writer<'_> {
         let graph = &self.derivation.model.graph;
         graph.any(id, |node| matches!(node, Node::BaseLaw(_)))
     }
+}
+
+/// Values by key, keys in the order in which they first come.
+fn gather<K: PartialEq, V>(pairs: impl Iterator<Item = (K, V)>) -> Vec<(K, Vec<V>)> {
+    let mut gathered: Vec<(K, Vec<V>)> = Vec::new();
+    for (key, value) in pairs {
+        match gathered.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, values)) => values.push(value),
+            None => gathered.push((key, vec![value])),
+        }
+    }
+    gathered
 }
 
 /// Removes from `jets` one jet for each field that the law is differentiated by, the lowest

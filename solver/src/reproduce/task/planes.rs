@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::figure::{Panel, Style, pattern_pair};
 use crate::study::{self, Setup};
 use crate::weakly::{Pattern, Selection, Window, pattern as expand};
+use nalgebra::{Matrix2, Vector2};
 
 /// Points along x and y of pictures, and of the field that a vortex is measured in.
 const DRAWN: [usize; 2] = [161, 81];
@@ -190,8 +191,9 @@ fn vortex(found: &Pattern, [u, v]: [usize; 2], shade: usize, side: f64) -> Resul
             if changes(corners(u, i, j)) && changes(corners(v, i, j)) {
                 let strength = curl(i, j).abs();
                 if best.is_none_or(|(most, _)| strength > most) {
-                    let middle = [0.5 * (x[i] + x[i + 1]), 0.5 * (y[j] + y[j + 1])];
-                    best = Some((strength, middle));
+                    let [a, b] = rest(corners(u, i, j), corners(v, i, j));
+                    let centre = [x[i] + a * (x[i + 1] - x[i]), y[j] + b * (y[j + 1] - y[j])];
+                    best = Some((strength, centre));
                 }
             }
         }
@@ -215,17 +217,53 @@ fn vortex(found: &Pattern, [u, v]: [usize; 2], shade: usize, side: f64) -> Resul
         + integral(low, high, &|t| sample(v, right, t))
         - integral(left, right, &|t| sample(u, t, high))
         - integral(low, high, &|t| sample(v, left, t));
-    let densest = found.nonlinear[shade]
-        .iter()
+    let rows = found.nonlinear[shade].iter();
+    let largest: Vec<f64> = rows
         .map(|row| row.iter().copied().fold(f64::NEG_INFINITY, f64::max))
-        .enumerate()
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-        .map_or(0, |(j, _)| j);
+        .collect();
     Ok(Vortex {
         circulation: circulation.abs(),
         centre: cy,
-        densest: y[densest],
+        densest: crest(&largest, y),
     })
+}
+
+/// Where in a cell both components vanish, in parts of the cell: Newton on the bilinear interpolants.
+fn rest(u: [f64; 4], v: [f64; 4]) -> [f64; 2] {
+    let mut place = Vector2::new(0.5, 0.5);
+    for _ in 0..20 {
+        let (a, b) = (place[0], place[1]);
+        // f = f00 + (f10 − f00) a + (f01 − f00) b + (f11 − f10 − f01 + f00) a b
+        let value = |[f00, f10, f01, f11]: [f64; 4]| {
+            f00 + (f10 - f00) * a + (f01 - f00) * b + (f11 - f10 - f01 + f00) * a * b
+        };
+        let slope = |[f00, f10, f01, f11]: [f64; 4]| {
+            let twist = f11 - f10 - f01 + f00;
+            [f10 - f00 + twist * b, f01 - f00 + twist * a]
+        };
+        let ([ua, ub], [va, vb]) = (slope(u), slope(v));
+        let Some(inverse) = Matrix2::new(ua, ub, va, vb).try_inverse() else {
+            break;
+        };
+        place -= inverse * Vector2::new(value(u), value(v));
+        place = place.map(|t| t.clamp(0.0, 1.0));
+    }
+    [place[0], place[1]]
+}
+
+/// Where evenly spaced values are largest: the crest of the parabola through three of them.
+fn crest(values: &[f64], y: &[f64]) -> f64 {
+    let highest = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+    let j = highest.map_or(0, |(j, _)| j);
+    if j == 0 || j + 1 == values.len() {
+        return y[j];
+    }
+    let [before, at, after] = [values[j - 1], values[j], values[j + 1]];
+    let bend = before - 2.0 * at + after;
+    match bend < 0.0 {
+        true => y[j] + 0.5 * (before - after) / bend * (y[j + 1] - y[j]),
+        false => y[j],
+    }
 }
 
 /// Interpolation on the uniform grid, periodic in x.
