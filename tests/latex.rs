@@ -158,6 +158,14 @@ impl<'a> Reader<'a> {
             self.rest = &start[length..];
             start[..length].to_owned()
         };
+        // Digits below a name are part of it.
+        let digits = |rest: &str| {
+            rest.trim_start().starts_with("_{")
+                && rest.trim_start()[2..].starts_with(|c: char| c.is_ascii_digit())
+        };
+        if digits(self.rest) && self.take("_") {
+            name += self.braces();
+        }
         let mark = if self.take("^") { self.braces() } else { "" };
         let below = if self.take("_") { self.braces() } else { "" };
         let below: Vec<&str> = below

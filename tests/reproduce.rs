@@ -249,7 +249,7 @@ fn formulas_in_latex() {
     ]);
     for wanted in [
         r"[\text{mass},\,v]\quad -n^{0}_{y} - n^{0} \partial_{y}",
-        r"\frac{\mu^{0}_{y}}{n^{0}} \partial_{y} + \frac{\mu^{0}}{n^{0}} \partial_{y}^{2}",
+        r"\frac{1}{n^{0}} \left[\left(2 \mu^{0} + \lambda^{0}\right) \partial_{x}^{2} + \mu^{0}_{y} \partial_{y} + \mu^{0} \partial_{y}^{2}\right]",
     ] {
         assert!(printed.contains(wanted), "{wanted} is not in\n{printed}");
     }

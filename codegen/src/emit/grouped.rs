@@ -91,16 +91,27 @@ impl Writer<'_> {
                 Some(_) => self.by_expansion(pieces),
                 None => self.one_by_one(pieces),
             };
-            let single = parts.len() == 1;
-            let sum = signed_sum(parts);
             if !divided {
-                return sum;
+                return signed_sum(parts);
             }
-            let front = self.product(&Rational::one(), &vec![(divisor, -Rational::one())], "");
+            let single = parts.len() == 1;
+            let negative = !single && parts.iter().all(|part| part.starts_with('-'));
+            let parts = match negative {
+                true => parts
+                    .iter()
+                    .map(|p| p.trim_start_matches('-').to_owned())
+                    .collect(),
+                false => parts,
+            };
+            let sum = signed_sum(parts);
+            let front = self.product(&Rational::one(), &[(divisor, -Rational::one())], "");
             match (single, sum.strip_prefix('-')) {
                 (true, Some(rest)) => format!("-{front} {rest}"),
                 (true, None) => format!("{front} {sum}"),
-                _ => format!("{front} {}", self.notation.square_brackets(&sum)),
+                _ => {
+                    let sign = if negative { "-" } else { "" };
+                    format!("{sign}{front} {}", self.notation.square_brackets(&sum))
+                }
             }
         });
         lines.collect()
@@ -188,12 +199,13 @@ impl Writer<'_> {
         let by_outer = gather(keyed.map(|piece| (piece.outer, (piece.number, piece.inner))));
         let mut keyed = Vec::new();
         for (outer, mut inner) in by_outer {
-            inner.sort_by(|a, b| a.1.cmp(&b.1));
-            let largest = inner.iter().map(|(number, _)| number.abs()).max();
-            let mut scale = largest.unwrap_or_else(Rational::one);
-            if inner[0].0.is_negative() {
-                scale = -scale;
-            }
+            inner.sort_by(|(_, (atom, jets)), (_, (other, others))| {
+                jets.cmp(others).then(atom.cmp(other))
+            });
+            let first = &inner[0].0;
+            let alike = inner.iter().all(|(n, _)| n.abs() == first.abs());
+            let size = if alike { first.abs() } else { Rational::one() };
+            let scale = if first.is_negative() { -size } else { size };
             inner.iter_mut().for_each(|(number, _)| *number /= &scale);
             keyed.push((inner, (scale, outer)));
         }
@@ -221,18 +233,23 @@ impl Writer<'_> {
                 let what = format!("{expansion} {jets}");
                 self.product(number, factors, what.trim_end())
             }
-            _ => {
+            [(first, (common, _)), ..] => {
+                let shared = outers.iter().all(|(_, (factors, _))| factors == common);
+                let sign = first.signum();
                 let parts = outers.iter().map(|(number, (factors, jets))| {
-                    self.product(number, factors, &self.jets(jets))
+                    let own = if shared { &[] } else { factors.as_slice() };
+                    self.product(&(number * &sign), own, &self.jets(jets))
                 });
-                let outer = signed_sum(parts.collect());
-                format!("{expansion} {}", self.notation.brackets(&outer))
+                let outer = self.notation.brackets(&signed_sum(parts.collect()));
+                let common = if shared { common.as_slice() } else { &[] };
+                self.product(&sign, common, &format!("{expansion} {outer}"))
             }
+            [] => String::new(),
         }
     }
 
     /// number · Π factors · what.
-    fn product(&self, number: &Rational, factors: &Factors, what: &str) -> String {
+    fn product(&self, number: &Rational, factors: &[(Id, Rational)], what: &str) -> String {
         let printer = self.printer(&self.fields);
         let mut text = match (factors.is_empty(), number.abs().is_one()) {
             (true, true) => String::new(),

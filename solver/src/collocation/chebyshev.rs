@@ -21,6 +21,27 @@ pub enum GridKind {
     Point,
 }
 
+impl GridKind {
+    /// Number of points.
+    pub fn count(self) -> usize {
+        match self {
+            GridKind::Gauss(n) | GridKind::Lobatto(n) | GridKind::Interior(n) => n,
+            GridKind::Lower | GridKind::Upper | GridKind::Point => 1,
+        }
+    }
+
+    /// The position of the first of another grid's points among this one's, where all of them are
+    /// points of this one in a row.
+    pub fn start_of(self, other: GridKind) -> Option<usize> {
+        match (self, other) {
+            (GridKind::Lobatto(n), GridKind::Interior(m)) if n == m + 2 => Some(1),
+            (GridKind::Lobatto(_), GridKind::Lower) => Some(0),
+            (GridKind::Lobatto(n), GridKind::Upper) => Some(n - 1),
+            _ => (self == other).then_some(0),
+        }
+    }
+}
+
 /// Points in increasing order.
 #[derive(Clone, Debug)]
 pub struct Grid {

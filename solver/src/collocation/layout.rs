@@ -36,10 +36,6 @@ impl Layout {
             (Some(m), 0) => GridKind::Gauss(m),
             (Some(m), _) => GridKind::Lobatto(m + 1),
         };
-        let count = |kind: GridKind| match kind {
-            GridKind::Gauss(n) | GridKind::Lobatto(n) | GridKind::Interior(n) => n,
-            GridKind::Lower | GridKind::Upper | GridKind::Point => 1,
-        };
         let mut columns = Vec::new();
         let mut size = 0;
         for field in 0..conditions.len() {
@@ -47,9 +43,9 @@ impl Layout {
             columns.push(Block {
                 grid: kind,
                 offset: size,
-                len: count(kind),
+                len: kind.count(),
             });
-            size += count(kind);
+            size += kind.count();
         }
         let mut rows = Vec::new();
         let mut offset = 0;
@@ -63,9 +59,9 @@ impl Layout {
             rows.push(Block {
                 grid: kind,
                 offset,
-                len: count(kind),
+                len: kind.count(),
             });
-            offset += count(kind);
+            offset += kind.count();
         }
         Layout {
             columns,

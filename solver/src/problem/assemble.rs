@@ -1,6 +1,6 @@
 //! Matrices from terms: block (row, column) = Σ diag(coefficient) · (i k)^a |k|^b · D^d.
 
-use super::block::{Block, Blocks};
+use super::block::{Block, Blocks, Derivative};
 use super::{LinearProblem, Problem, WallRow, quarter_turn};
 use crate::collocation::{Discretisation, GridKind, Layout};
 use crate::dense::{Scalar, bordered};
@@ -160,7 +160,7 @@ impl LinearProblem {
             Block {
                 row: rows.offset,
                 column: columns.offset,
-                derivative: discretisation.matrix(columns.grid, rows.grid, order),
+                derivative: Derivative::new(discretisation, columns.grid, rows.grid, order),
                 coefficients,
             }
         };
@@ -204,7 +204,12 @@ impl LinearProblem {
                 blocks.push(Block {
                     row: self.layout.walls + index,
                     column: columns.offset,
-                    derivative: discretisation.matrix(columns.grid, to, usize::from(jet.y)),
+                    derivative: Derivative::new(
+                        discretisation,
+                        columns.grid,
+                        to,
+                        usize::from(jet.y),
+                    ),
                     coefficients: vec![T::from_complex(factor)],
                 });
             }

@@ -1,5 +1,6 @@
 //! A matrix kept as blocks diag(coefficient) · D^d: applied as it is, or written out.
 
+use crate::collocation::{Discretisation, GridKind};
 use crate::dense::{Scalar, vectorised};
 use faer::Mat;
 use std::sync::Arc;
@@ -8,8 +9,29 @@ use std::sync::Arc;
 pub(super) struct Block<T> {
     pub row: usize,
     pub column: usize,
-    pub derivative: Arc<Mat<f64>>,
+    pub derivative: Derivative,
     pub coefficients: Vec<T>,
+}
+
+/// D^d from the points of a column to those of a row.
+pub(super) enum Derivative {
+    /// No derivative, and the row's points are the column's from this one on.
+    Selection(usize),
+    Dense(Arc<Mat<f64>>),
+}
+
+impl Derivative {
+    pub(super) fn new(
+        discretisation: &Discretisation,
+        from: GridKind,
+        to: GridKind,
+        order: usize,
+    ) -> Self {
+        match from.start_of(to).filter(|_| order == 0) {
+            Some(start) => Derivative::Selection(start),
+            None => Derivative::Dense(discretisation.matrix(from, to, order)),
+        }
+    }
 }
 
 /// A square matrix as a sum of blocks.
@@ -59,38 +81,63 @@ impl<T: Scalar> Blocks<T> {
 impl<T: Scalar> Block<T> {
     #[inline(always)]
     fn add_to(&self, matrix: &mut Mat<T>) {
-        for j in 0..self.derivative.ncols() {
-            let target = &mut matrix.col_as_slice_mut(self.column + j)[self.row..];
-            let source = self.derivative.col_as_slice(j);
-            for ((t, c), d) in target.iter_mut().zip(&self.coefficients).zip(source) {
-                *t += c.times(*d);
+        match &self.derivative {
+            Derivative::Selection(start) => {
+                for (i, c) in self.coefficients.iter().enumerate() {
+                    matrix[(self.row + i, self.column + start + i)] += *c;
+                }
+            }
+            Derivative::Dense(derivative) => {
+                for j in 0..derivative.ncols() {
+                    let target = &mut matrix.col_as_slice_mut(self.column + j)[self.row..];
+                    let source = derivative.col_as_slice(j);
+                    for ((t, c), d) in target.iter_mut().zip(&self.coefficients).zip(source) {
+                        *t += c.times(*d);
+                    }
+                }
             }
         }
     }
 
     #[inline(always)]
     fn apply(&self, x: &[T], result: &mut [T]) {
-        let mut derived = vec![T::zero_impl(); self.coefficients.len()];
-        let x = &x[self.column..][..self.derivative.ncols()];
-        for (j, value) in x.iter().enumerate() {
-            for (r, d) in derived.iter_mut().zip(self.derivative.col_as_slice(j)) {
-                *r += value.times(*d);
+        let x = &x[self.column..];
+        let target = result[self.row..].iter_mut().zip(&self.coefficients);
+        match &self.derivative {
+            Derivative::Selection(start) => {
+                target
+                    .zip(&x[*start..])
+                    .for_each(|((t, c), x)| *t += *c * *x);
             }
-        }
-        let target = &mut result[self.row..];
-        for ((t, c), d) in target.iter_mut().zip(&self.coefficients).zip(derived) {
-            *t += *c * d;
+            Derivative::Dense(derivative) => {
+                let mut derived = vec![T::zero_impl(); self.coefficients.len()];
+                for (j, value) in x[..derivative.ncols()].iter().enumerate() {
+                    for (r, d) in derived.iter_mut().zip(derivative.col_as_slice(j)) {
+                        *r += value.times(*d);
+                    }
+                }
+                target.zip(derived).for_each(|((t, c), d)| *t += *c * d);
+            }
         }
     }
 
     #[inline(always)]
     fn apply_adjoint(&self, y: &[T], result: &mut [T]) {
         let pairs = self.coefficients.iter().zip(&y[self.row..]);
-        let weighted: Vec<T> = pairs.map(|(c, y)| c.conjugate() * *y).collect();
-        let target = &mut result[self.column..][..self.derivative.ncols()];
-        for (j, t) in target.iter_mut().enumerate() {
-            for (w, d) in weighted.iter().zip(self.derivative.col_as_slice(j)) {
-                *t += w.times(*d);
+        let weighted = pairs.map(|(c, y)| c.conjugate() * *y);
+        let target = &mut result[self.column..];
+        match &self.derivative {
+            Derivative::Selection(start) => {
+                let selected = target[*start..].iter_mut();
+                selected.zip(weighted).for_each(|(t, w)| *t += w);
+            }
+            Derivative::Dense(derivative) => {
+                let weighted: Vec<T> = weighted.collect();
+                for (j, t) in target[..derivative.ncols()].iter_mut().enumerate() {
+                    for (w, d) in weighted.iter().zip(derivative.col_as_slice(j)) {
+                        *t += w.times(*d);
+                    }
+                }
             }
         }
     }

@@ -1,6 +1,6 @@
 //! One Fourier mode X[k;m] of the expansion, and its derivatives where nonlinear terms need them.
 
-use crate::collocation::{Grid, GridKind};
+use crate::collocation::GridKind;
 use crate::dense::vectorised;
 use crate::model::{C64, Jet};
 use crate::problem::{Problem, quarter_turn};
@@ -82,11 +82,14 @@ impl Mode {
         let Some(block) = problem.direct.layout.columns.get(field) else {
             let profiles = problem.direct.layout.columns.len();
             let value = self.uniform.get(field - profiles).copied();
-            return vec![value.unwrap_or_default(); Grid::new(grid).len()];
+            return vec![value.unwrap_or_default(); grid.count()];
         };
         let source = if jet.t == 0 { &self.values } else { &self.rate };
         let source = &source[block.offset..block.offset + block.len];
         let order = usize::from(jet.y);
+        if let Some(start) = block.grid.start_of(grid).filter(|_| order == 0) {
+            return source[start..][..grid.count()].to_vec();
+        }
         let matrix = problem.discretisation.matrix(block.grid, grid, order);
         let scale = problem.scale().powi(i32::from(jet.y));
         // Real and imaginary parts apart: with a mirror symmetry one of them is zero.
