@@ -166,7 +166,14 @@ impl<'a> Reader<'a> {
         if digits(self.rest) && self.take("_") {
             name += self.braces();
         }
-        let mark = if self.take("^") { self.braces() } else { "" };
+        // ^{0} and primes mark what a symbol stands for; any other number is a power.
+        let marked = ["^{0", "^{\\prime", "^{\\dagger"];
+        let marked = marked.iter().any(|mark| self.rest.starts_with(mark));
+        let mark = if marked && self.take("^") {
+            self.braces()
+        } else {
+            ""
+        };
         let below = if self.take("_") { self.braces() } else { "" };
         let below: Vec<&str> = below
             .split_whitespace()

@@ -10,7 +10,7 @@ use super::wall::{
 };
 use super::{Deriver, pairing};
 use crate::diagnostic::{Diagnostic, Location};
-use crate::graph::{Graph, Id, Jet, Node, Plain, Printer};
+use crate::graph::{Graph, Id, Jet, Node, Plain};
 use crate::model::{Closure, Condition, End};
 
 /// A condition on the adjoint field: Σ symbol · jets = 0, `jet.field` being a balance.
@@ -309,22 +309,8 @@ fn describe_demand(
     jet: Jet,
     combination: &Combination,
 ) -> String {
-    let fields = deriver.model.field_names();
-    let parameters: Vec<String> = deriver
-        .model
-        .parameters
-        .iter()
-        .map(|p| p.name.clone())
-        .collect();
-    let printer = Printer {
-        graph: deriver.graph,
-        fields: &fields,
-        parameters: &parameters,
-        laws: &[],
-        coordinate: deriver.model.coordinate(),
-        slots: &[],
-        notation: &Plain,
-    };
+    let lettering = deriver.model.lettering();
+    let printer = lettering.printer(deriver.graph, &Plain);
     let place = deriver.model.interval.as_ref().map(|i| match end {
         End::Lower => i.lower,
         End::Upper => i.upper,
@@ -332,7 +318,12 @@ fn describe_demand(
     let place = place.map_or(String::new(), |p| printer.print(p));
     let mut asked: Vec<String> = combination
         .keys()
-        .map(|y| format!("{}†", fields[problem.pairing[usize::from(y.field)]]))
+        .map(|y| {
+            format!(
+                "{}†",
+                lettering.fields[problem.pairing[usize::from(y.field)]]
+            )
+        })
         .collect();
     asked.dedup();
     format!(

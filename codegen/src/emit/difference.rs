@@ -15,12 +15,12 @@ pub fn sides(
     let writer = Writer::new(derivation, notation);
     let (fields, mark) = match subject {
         Subject::Adjoint(..) | Subject::AdjointCondition(..) => {
-            let daggers = writer.fields.iter().map(|f| format!("{f}†"));
+            let daggers = writer.fields().iter().map(|f| format!("{f}†"));
             (daggers.collect(), "")
         }
-        Subject::Balance(_) | Subject::Law(_) | Subject::Base(_) => (writer.fields.clone(), ""),
+        Subject::Balance(_) | Subject::Law(_) | Subject::Base(_) => (writer.fields().to_vec(), ""),
         Subject::Linear(..) | Subject::Nonlinear(..) | Subject::Condition(..) => {
-            (writer.fields.clone(), "'")
+            (writer.fields().to_vec(), "'")
         }
     };
     let jets = difference.monomial.iter();

@@ -54,7 +54,7 @@ impl Writer<'_> {
         let common = common.filter(|c| terms.len() > 1 && !c.is_empty());
         let Some(common) = common else {
             let parts = terms.iter().map(|(coefficient, what)| match what.as_str() {
-                "" => self.printer(&self.fields).print(*coefficient),
+                "" => self.printer(self.fields()).print(*coefficient),
                 what => self.scaled(*coefficient, what),
             });
             return signed_sum(parts.collect());
@@ -71,7 +71,7 @@ impl Writer<'_> {
             match (factors.as_slice(), what.as_str()) {
                 // A sum that nothing multiplies needs no bracket in a sum.
                 ([(sum, e)], "") if e.is_one() && number.is_one() => {
-                    self.printer(&self.fields).print(*sum)
+                    self.printer(self.fields()).print(*sum)
                 }
                 _ => self.product(&number, &factors, what),
             }
@@ -250,7 +250,7 @@ impl Writer<'_> {
 
     /// number · Π factors · what.
     fn product(&self, number: &Rational, factors: &[(Id, Rational)], what: &str) -> String {
-        let printer = self.printer(&self.fields);
+        let printer = self.printer(self.fields());
         let mut text = match (factors.is_empty(), number.abs().is_one()) {
             (true, true) => String::new(),
             (true, false) => self.notation.number(&number.abs()),
@@ -274,7 +274,7 @@ impl Writer<'_> {
     /// Π jets, equal ones as a power.
     fn jets(&self, monomial: &[Jet]) -> String {
         let runs = monomial.chunk_by(|a, b| a == b).map(|run| {
-            let jet = self.printer(&self.fields).jet(run[0], "'");
+            let jet = self.printer(self.fields()).jet(run[0], "'");
             match run.len() {
                 1 => jet,
                 times => {

@@ -2,7 +2,7 @@
 
 use crate::derive::{AdjointCondition, CaseClosure, Derivation, Form, Term};
 use crate::graph::{Id, Jet, Latex, Notation, Plain, Printer};
-use crate::model::End;
+use crate::model::{End, Lettering};
 use std::collections::BTreeMap;
 
 /// What `explain` can print.
@@ -92,47 +92,41 @@ pub fn nonlinear_row(derivation: &Derivation, degree: usize, row: usize) -> Stri
 pub(super) struct Writer<'a> {
     pub(super) derivation: &'a Derivation,
     pub(super) notation: &'a dyn Notation,
-    pub(super) fields: Vec<String>,
+    lettering: Lettering,
     /// Adjoint fields by balance.
     adjoint_fields: Vec<String>,
-    parameters: Vec<String>,
-    laws: Vec<String>,
 }
 
 impl<'a> Writer<'a> {
     pub(super) fn new(derivation: &'a Derivation, notation: &'a dyn Notation) -> Self {
-        let model = &derivation.model;
-        let fields = model.field_names();
-        let adjoint_fields = derivation
-            .operators
-            .pairing
-            .iter()
-            .map(|&f| format!("{}†", fields[f]))
+        let lettering = derivation.model.lettering();
+        let paired = derivation.operators.pairing.iter();
+        let adjoint_fields = paired
+            .map(|&field| format!("{}†", lettering.fields[field]))
             .collect();
         Writer {
             derivation,
             notation,
-            fields,
+            lettering,
             adjoint_fields,
-            parameters: model.parameters.iter().map(|p| p.name.clone()).collect(),
-            laws: model.laws.iter().map(|l| l.name.clone()).collect(),
         }
     }
 
+    pub(super) fn fields(&self) -> &[String] {
+        &self.lettering.fields
+    }
+
+    /// A printer for the model's own fields, or others by the same numbers.
     pub(super) fn printer<'b>(&'b self, fields: &'b [String]) -> Printer<'b> {
+        let graph = &self.derivation.model.graph;
         Printer {
-            graph: &self.derivation.model.graph,
             fields,
-            parameters: &self.parameters,
-            laws: &self.laws,
-            coordinate: self.derivation.model.coordinate(),
-            slots: &[],
-            notation: self.notation,
+            ..self.lettering.printer(graph, self.notation)
         }
     }
 
     fn print(&self, id: Id) -> String {
-        self.printer(&self.fields).print(id)
+        self.printer(self.fields()).print(id)
     }
 
     fn place(&self, end: End) -> String {
@@ -216,7 +210,7 @@ impl<'a> Writer<'a> {
         let mut lines = vec![Line::Heading("Base state".into())];
         for (field, closed) in model.base.closed.iter().enumerate() {
             if let Some(id) = closed {
-                let name = self.notation.symbol(&self.fields[field], "⁰", &[]);
+                let name = self.notation.symbol(&self.fields()[field], "⁰", &[]);
                 let formula = format!("{name} = {}", self.print(*id));
                 lines.push(Line::Formula(Label::None, formula));
             }
@@ -260,9 +254,9 @@ impl<'a> Writer<'a> {
         let (model, operators) = (&self.derivation.model, &self.derivation.operators);
         let rows: Vec<String> = model.balances.iter().map(|b| b.name.clone()).collect();
         let mut lines = vec![Line::Heading("Mass matrix M0 [balance, field]".into())];
-        self.entries(&mut lines, &operators.linear, &rows, &self.fields, true);
+        self.entries(&mut lines, &operators.linear, &rows, self.fields(), true);
         lines.push(Line::Heading("Linear operator L [balance, field]".into()));
-        self.entries(&mut lines, &operators.linear, &rows, &self.fields, false);
+        self.entries(&mut lines, &operators.linear, &rows, self.fields(), false);
         lines.push(Line::Heading("Boundary conditions".into()));
         for case in &operators.cases {
             lines.extend(self.case(&case.choices));
@@ -298,10 +292,10 @@ impl<'a> Writer<'a> {
                 self.vanishes(Label::Name("conserved".into()), &integral(density))
             }
             CaseClosure::Gauge { field, .. } => {
-                Line::Words(format!("gauge: the constant of {}", self.fields[*field]))
+                Line::Words(format!("gauge: the constant of {}", self.fields()[*field]))
             }
             CaseClosure::Unknown { field, density } => {
-                let name = Label::Name(format!("unknown {}", self.fields[*field]));
+                let name = Label::Name(format!("unknown {}", self.fields()[*field]));
                 self.vanishes(name, &integral(density))
             }
         }
@@ -313,7 +307,7 @@ impl<'a> Writer<'a> {
             None => format!("Symmetry: none under {0} → -{0}", model.periodic),
             Some(parity) => {
                 let signs: Vec<String> = self
-                    .fields
+                    .fields()
                     .iter()
                     .zip(&parity.fields)
                     .map(|(name, odd)| {
@@ -324,7 +318,7 @@ impl<'a> Writer<'a> {
                         }
                     })
                     .collect();
-                let (before, after) = (self.fields.join(", "), signs.join(", "));
+                let (before, after) = (self.fields().join(", "), signs.join(", "));
                 format!(
                     "Symmetry: {0} → -{0} with ({before}) → ({after})",
                     model.periodic
@@ -335,7 +329,7 @@ impl<'a> Writer<'a> {
 
     fn adjoint(&self) -> Vec<Line> {
         let operators = &self.derivation.operators;
-        let (rows, columns) = (&self.fields, &self.adjoint_fields);
+        let (rows, columns) = (self.fields(), &self.adjoint_fields);
         let title = |what: &str| Line::Heading(format!("{what} [field, balance's adjoint]"));
         let mut lines = vec![title("Adjoint mass matrix M0†")];
         self.entries(&mut lines, &operators.adjoint, rows, columns, true);
@@ -387,12 +381,12 @@ impl<'a> Writer<'a> {
     }
 
     fn jet(&self, jet: Jet) -> String {
-        self.printer(&self.fields).jet(jet, "'")
+        self.printer(self.fields()).jet(jet, "'")
     }
 
     /// coefficient · what, ones left out.
     pub(super) fn scaled(&self, coefficient: Id, what: &str) -> String {
-        let text = self.printer(&self.fields).factor(coefficient);
+        let text = self.printer(self.fields()).factor(coefficient);
         match text.as_str() {
             "1" => what.to_owned(),
             "-1" => format!("-{what}"),

@@ -10,8 +10,6 @@ pub struct Printer<'a> {
     pub parameters: &'a [String],
     pub laws: &'a [String],
     pub coordinate: &'a str,
-    /// Names of the kernel arrays.
-    pub slots: &'a [String],
     pub notation: &'a dyn Notation,
 }
 
@@ -96,10 +94,7 @@ impl Printer<'_> {
                 let marks: Vec<&str> = marks.iter().map(String::as_str).collect();
                 (notation.symbol(name, "⁰", &marks), Binding::Power)
             }
-            Node::Slot(array, position) => (
-                format!("{}[{position}]", self.slots[*array]),
-                Binding::Power,
-            ),
+            Node::Slot(array, position) => (format!("[{array}, {position}]"), Binding::Power),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::Kernel;
 use super::polarise::form_tables;
 use crate::derive::{CaseClosure, Derivation, Opener, base_value};
-use crate::graph::{Graph, Id, Jet, Node, Plain, Printer, Variable};
+use crate::graph::{Graph, Id, Jet, Node, Plain, Variable};
 use crate::model::Amplitude;
 use crate::structure::*;
 use num_traits::One;
@@ -385,23 +385,9 @@ impl Assembler<'_> {
     }
 
     fn describe_amplitude(&self) -> String {
-        let fields = self.model.field_names();
-        let parameters: Vec<String> = self
-            .model
-            .parameters
-            .iter()
-            .map(|p| p.name.clone())
-            .collect();
-        let coordinate = self.model.coordinate();
-        let printer = Printer {
-            graph: self.graph,
-            fields: &fields,
-            parameters: &parameters,
-            laws: &[],
-            coordinate,
-            slots: &[],
-            notation: &Plain,
-        };
+        let lettering = self.model.lettering();
+        let (fields, coordinate) = (&lettering.fields, self.model.coordinate());
+        let printer = lettering.printer(self.graph, &Plain);
         match &self.model.amplitude {
             Amplitude::Integral { weights, value } => {
                 let terms: Vec<String> = weights

@@ -12,7 +12,7 @@ mod statement;
 pub use resolve::resolve;
 
 use crate::diagnostic::Location;
-use crate::graph::{Graph, Id};
+use crate::graph::{Graph, Id, Notation, Printer};
 
 /// An end of the cross-stream interval.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
@@ -54,9 +54,41 @@ impl Model {
         self.fields.iter().map(|f| f.name.clone()).collect()
     }
 
+    /// The names that its expressions are printed with.
+    pub fn lettering(&self) -> Lettering {
+        Lettering {
+            fields: self.field_names(),
+            parameters: self.parameters.iter().map(|p| p.name.clone()).collect(),
+            laws: self.laws.iter().map(|l| l.name.clone()).collect(),
+            coordinate: self.coordinate().to_owned(),
+        }
+    }
+
     /// Name of the cross-stream coordinate.
     pub fn coordinate(&self) -> &str {
         self.interval.as_ref().map_or("y", |i| i.name.as_str())
+    }
+}
+
+/// Names of fields, parameters, laws and the coordinate.
+pub struct Lettering {
+    pub fields: Vec<String>,
+    parameters: Vec<String>,
+    laws: Vec<String>,
+    coordinate: String,
+}
+
+impl Lettering {
+    /// A printer of expressions of `graph`.
+    pub fn printer<'a>(&'a self, graph: &'a Graph, notation: &'a dyn Notation) -> Printer<'a> {
+        Printer {
+            graph,
+            fields: &self.fields,
+            parameters: &self.parameters,
+            laws: &self.laws,
+            coordinate: &self.coordinate,
+            notation,
+        }
     }
 }
 
