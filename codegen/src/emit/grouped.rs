@@ -1,8 +1,8 @@
 //! Operators grouped as the literature groups them, where a formula has two dimensions to stand in.
 //!
-//! An entry of L has its common denominator in front: (1/n⁰)[μ⁰ ∂x² + …]. A row of N has one line for
-//! the terms without a law and one for each law; in it, terms that share what multiplies the law's
-//! expansion stand together, (κ⁰_n n' + κ⁰_T T') T'_yy, and then those that share the expansion,
+//! An entry of L has its common denominator in front: (1/n⁰)[μ⁰ ∂x² + …]. A row of N has
+//! a line for the terms without a law, then its laws one by one: terms that share what multiplies the
+//! law's expansion stand together, (κ⁰_n n' + κ⁰_T T') T'_yy, and so do those that share the expansion,
 //! (μ⁰_n n' + μ⁰_T T') (2 u'_xx + u'_yy + …).
 
 use super::text::{Writer, signed_sum};
@@ -86,35 +86,31 @@ impl Writer<'_> {
         let keyed = self.pieces(form, divisor).into_iter();
         let mut lines = gather(keyed.map(|piece| ((piece.divided, piece.law), piece)));
         lines.sort_by_key(|(key, _)| *key);
-        let lines = lines.into_iter().map(|((divided, law), pieces)| {
-            let parts = match law {
+        let mut rows = Vec::new();
+        for ((divided, law), pieces) in lines {
+            let mut parts = match law {
                 Some(_) => self.by_expansion(pieces),
-                None => self.one_by_one(pieces),
+                None => vec![self.one_by_one(&pieces)],
             };
-            if !divided {
-                return signed_sum(parts);
-            }
-            let single = parts.len() == 1;
-            let negative = !single && parts.iter().all(|part| part.starts_with('-'));
-            let parts = match negative {
-                true => parts
+            if divided {
+                parts = parts
                     .iter()
-                    .map(|p| p.trim_start_matches('-').to_owned())
-                    .collect(),
-                false => parts,
-            };
-            let sum = signed_sum(parts);
-            let front = self.product(&Rational::one(), &[(divisor, -Rational::one())], "");
-            match (single, sum.strip_prefix('-')) {
-                (true, Some(rest)) => format!("-{front} {rest}"),
-                (true, None) => format!("{front} {sum}"),
-                _ => {
-                    let sign = if negative { "-" } else { "" };
-                    format!("{sign}{front} {}", self.notation.square_brackets(&sum))
-                }
+                    .map(|part| self.divided(part, divisor))
+                    .collect();
             }
-        });
-        lines.collect()
+            rows.extend(parts);
+        }
+        rows
+    }
+
+    /// A sum over the divisor of its row.
+    fn divided(&self, sum: &str, divisor: Id) -> String {
+        let front = self.product(&Rational::one(), &[(divisor, -Rational::one())], "");
+        let (sign, rest) = match sum.strip_prefix('-') {
+            Some(rest) => ("-", rest),
+            None => ("", sum),
+        };
+        format!("{sign}{front} {rest}")
     }
 
     /// The terms of a form, sums in their coefficients multiplied out.
@@ -185,12 +181,22 @@ impl Writer<'_> {
         }
     }
 
-    fn one_by_one(&self, pieces: Vec<Piece>) -> Vec<String> {
+    /// Pieces without a law: Σ, in brackets where they are divided and more than one.
+    fn one_by_one(&self, pieces: &[Piece]) -> String {
+        let bracketed = pieces.len() > 1 && pieces[0].divided;
+        let sign = match bracketed {
+            true => pieces[0].number.signum(),
+            false => Rational::one(),
+        };
         let shown = pieces.iter().map(|piece| {
             let (factors, jets) = &piece.outer;
-            self.product(&piece.number, factors, &self.jets(jets))
+            self.product(&(&piece.number * &sign), factors, &self.jets(jets))
         });
-        shown.collect()
+        let sum = signed_sum(shown.collect());
+        match bracketed {
+            true => self.product(&sign, &[], &self.notation.square_brackets(&sum)),
+            false => sum,
+        }
     }
 
     /// Pieces of one law: equal outer parts together, then equal expansions.

@@ -57,20 +57,34 @@ pub fn print(derivation: &Derivation, section: Section) -> String {
     text.collect()
 }
 
-/// One section as LaTeX, a displayed formula an item; headings are formulas of text.
-pub fn latex(derivation: &Derivation, section: Section) -> Vec<String> {
-    let words = |text: &str| format!("\\text{{{}}}", text.replace('_', " "));
+/// A row of a typeset section.
+pub enum Typeset {
+    Heading(String),
+    Words(String),
+    /// A displayed formula in LaTeX.
+    Formula(String),
+}
+
+/// Words as LaTeX sets them inside a formula.
+pub fn latex_words(text: &str) -> String {
+    format!("\\text{{{}}}", text.replace('_', " "))
+}
+
+/// One section as LaTeX.
+pub fn latex(derivation: &Derivation, section: Section) -> Vec<Typeset> {
+    let words = latex_words;
     let lines = lines(&Writer::new(derivation, &Latex), section);
     let rows = lines.into_iter().map(|line| match line {
-        Line::Heading(text) | Line::Case(text) | Line::Words(text) => words(&text),
-        Line::Formula(Label::None, formula) => formula,
-        Line::Formula(Label::Name(name), formula) => format!("{}\\quad {formula}", words(&name)),
-        Line::Formula(Label::Place(place), formula) => {
-            format!("{place}{}\\quad {formula}", words(":"))
-        }
-        Line::Formula(Label::Entry(row, column), formula) => {
-            format!("[{},\\,{column}]\\quad {formula}", words(&row))
-        }
+        Line::Heading(text) => Typeset::Heading(text),
+        Line::Case(text) | Line::Words(text) => Typeset::Words(text),
+        Line::Formula(label, formula) => Typeset::Formula(match label {
+            Label::None => formula,
+            Label::Name(name) => format!("{}\\quad {formula}", words(&name)),
+            Label::Place(place) => format!("{place}{}\\quad {formula}", words(":")),
+            Label::Entry(row, column) => {
+                format!("[{},\\,{column}]\\quad {formula}", words(&row))
+            }
+        }),
     });
     rows.collect()
 }

@@ -147,6 +147,10 @@ impl Printer<'_> {
         if coefficient.is_one() {
             return self.at(id, Binding::Product);
         }
+        if !self.notation.is_flat() {
+            let number = self.notation.number(coefficient);
+            return format!("{number} {}", self.at(id, Binding::Product));
+        }
         let (numerator, denominator) = (coefficient.numer(), coefficient.denom());
         let text = if numerator.is_one() {
             self.at(id, Binding::Product)

@@ -8,7 +8,7 @@ use landau_codegen::Sources;
 use landau_codegen::build::read_sources;
 use landau_codegen::derive::Derivation;
 use landau_codegen::diagnostic::SourceFile;
-use landau_codegen::emit::text::{self, Section};
+use landau_codegen::emit::text::{self, Section, Typeset};
 use landau_codegen::generate;
 use landau_codegen::graph::{Latex, Notation, Plain};
 use serde_json::json;
@@ -75,6 +75,12 @@ pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format
             Format::Text => say!("{}", text::print(&derivation, section)),
             Format::Latex => {
                 for row in text::latex(&derivation, section) {
+                    let row = match row {
+                        Typeset::Formula(row) => row,
+                        Typeset::Heading(words) | Typeset::Words(words) => {
+                            text::latex_words(&words)
+                        }
+                    };
                     say!("\\[ {row} \\]");
                 }
             }

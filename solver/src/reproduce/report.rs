@@ -5,13 +5,15 @@ use super::errata::Judgement;
 use super::outcome::{Number, Outcome};
 use crate::error::{Error, Result};
 use crate::study::sweep::write_whole;
+use landau_codegen::emit::text::Typeset;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_latex::config::DisplayMode;
 use pulldown_latex::{Parser, RenderConfig, Storage, push_mathml};
 
-/// Sections of derived operators: a title, then rows of LaTeX.
+/// Derived operators and printed formulas.
 pub struct Formulas {
-    pub sections: Vec<(String, Vec<String>)>,
+    /// A title, then rows.
+    pub sections: Vec<(String, Vec<Typeset>)>,
     /// Printed formulas beside the derivation, terms in LaTeX.
     pub errata: Vec<Judgement>,
 }
@@ -23,8 +25,9 @@ nav { columns: 2; font-size: 0.9rem } figure { margin: 1.5rem 0; overflow-x: aut
 figcaption { font-size: 0.9rem; color: #444 } table { border-collapse: collapse; font-size: 0.9rem }
 th, td { padding: 0.2rem 0.8rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top }
 td.number { font-variant-numeric: tabular-nums; text-align: right } .failure { color: #a33 }
-.formula { overflow-x: auto; overflow-y: hidden; padding: 0.3rem 0 } .formula math { text-align: left; margin: 0 }
-td p { margin: 0 } td math { text-align: left } summary { cursor: pointer }";
+.formula { overflow-x: auto; overflow-y: hidden; padding: 0.3rem 0 } .formula math, td math { display: inline math; math-style: normal } mtd { text-align: left }
+h4 { margin: 1.2rem 0 0.2rem } p.case { margin: 0.5rem 0 0; color: #444 }
+td p { margin: 0 } .about { white-space: nowrap } summary { cursor: pointer }";
 
 pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) -> Result<()> {
     let study = shop.study;
@@ -130,7 +133,11 @@ fn operators(formulas: &Formulas) -> Result<Markup> {
     for (title, rows) in &formulas.sections {
         let mut set = Vec::new();
         for row in rows {
-            set.push(mathml(row)?);
+            set.push(match row {
+                Typeset::Heading(words) => html! { h4 { (words) } },
+                Typeset::Words(words) => html! { p.case { (words) } },
+                Typeset::Formula(latex) => html! { div.formula { (PreEscaped(mathml(latex)?)) } },
+            });
         }
         sections.push((title, set));
     }
@@ -139,7 +146,7 @@ fn operators(formulas: &Formulas) -> Result<Markup> {
             h2 { "The derived operators" }
             @for (title, rows) in &sections {
                 h3 { (title) }
-                @for row in rows { div.formula { (PreEscaped(row)) } }
+                @for row in rows { (row) }
             }
         }
     })
@@ -155,8 +162,8 @@ fn errata(judgements: &[Judgement]) -> Result<Markup> {
         }
         rows.push(html! {
             tr {
-                td { (judgement.number) }
-                td { (judgement.about) }
+                td.about { (judgement.number) }
+                td.about { (judgement.about) }
                 td {
                     @if differences.is_empty() { "agrees" } @else {
                         (erratum(judgement))
