@@ -105,12 +105,18 @@ impl Writer<'_> {
 
     /// A sum over the divisor of its row.
     fn divided(&self, sum: &str, divisor: Id) -> String {
-        let front = self.product(&Rational::one(), &[(divisor, -Rational::one())], "");
         let (sign, rest) = match sum.strip_prefix('-') {
             Some(rest) => ("-", rest),
             None => ("", sum),
         };
-        format!("{sign}{front} {rest}")
+        // 2/n⁰ rather than 1/n⁰ 2
+        let whole = |number: &str| number.bytes().all(|b| b.is_ascii_digit());
+        let (number, rest) = match rest.split_once(' ') {
+            Some((number, rest)) if whole(number) => (number, rest),
+            _ => ("1", rest),
+        };
+        let below = self.printer(self.fields()).print(divisor);
+        format!("{sign}{} {rest}", self.notation.fraction(number, &[below]))
     }
 
     /// The terms of a form, sums in their coefficients multiplied out.
@@ -208,14 +214,25 @@ impl Writer<'_> {
             inner.sort_by(|(_, (atom, jets)), (_, (other, others))| {
                 jets.cmp(others).then(atom.cmp(other))
             });
-            let first = &inner[0].0;
-            let alike = inner.iter().all(|(n, _)| n.abs() == first.abs());
-            let size = if alike { first.abs() } else { Rational::one() };
-            let scale = if first.is_negative() { -size } else { size };
+            let largest = inner.iter().map(|(number, _)| number.abs()).max();
+            let size = largest.unwrap_or_else(Rational::one);
+            let scale = if inner[0].0.is_negative() {
+                -size
+            } else {
+                size
+            };
             inner.iter_mut().for_each(|(number, _)| *number /= &scale);
             keyed.push((inner, (scale, outer)));
         }
-        let by_inner = gather(keyed.into_iter());
+        let mut by_inner = gather(keyed.into_iter());
+        for (inner, outers) in &mut by_inner {
+            // ½ and 1/6 stay with their terms; a number that all terms share stands before them.
+            let least = outers.iter().map(|(scale, _)| scale.abs()).min();
+            if let (Some(least), false) = (least, inner.iter().all(|(n, _)| n.abs().is_one())) {
+                inner.iter_mut().for_each(|(number, _)| *number *= &least);
+                outers.iter_mut().for_each(|(scale, _)| *scale /= &least);
+            }
+        }
         let shown = by_inner
             .iter()
             .map(|(inner, outers)| self.group(inner, outers));
