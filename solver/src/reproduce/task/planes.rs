@@ -130,47 +130,47 @@ pub(super) fn circulation(
             vortex(&found, [u, v], field(&found, shade)?, length)
         })
     })?;
-    let mut strength = Panel::new("circulation", &over.name, "C");
-    let mut height = Panel::new("height", &over.name, "y");
-    let mut table = Table::new(&[
-        &over.name,
-        "circulation",
-        "vortex centre",
-        "largest density",
-    ]);
     let values = over.values();
-    for (index, vortex) in &found {
-        let Vortex {
-            circulation,
-            centre,
-            densest,
-        } = vortex;
-        let place = values[index % values.len()];
-        table
-            .rows
-            .push(vec![place, *circulation, *centre, *densest]);
-    }
-    let of = |column: usize| -> Vec<(f64, f64)> {
-        table.rows.iter().map(|row| (row[0], row[column])).collect()
-    };
-    strength.curve("", Style::Line, of(1));
-    height.curve("vortex centre", Style::Line, of(2));
-    height.curve(&format!("largest {shade}"), Style::Dashed, of(3));
-    if let Some(best) = table.rows.iter().max_by(|a, b| a[1].total_cmp(&b[1])) {
-        for (quantity, ours) in [
-            ("largest circulation", best[1]),
-            ("where it is reached", best[0]),
-        ] {
-            outcome.numbers.push(Number {
-                figure: figure.to_owned(),
-                quantity: quantity.to_owned(),
-                ours: Some(ours),
-                printed: cases[0].printed.get(quantity).copied(),
-                note: cases[0].note.clone(),
-            });
+    for (number, case) in cases.iter().enumerate() {
+        let mut table = Table::new(&[
+            &over.name,
+            "circulation",
+            "vortex centre",
+            "largest density",
+        ]);
+        for (index, vortex) in &found {
+            if index / values.len() == number {
+                let place = values[index % values.len()];
+                let row = vec![place, vortex.circulation, vortex.centre, vortex.densest];
+                table.rows.push(row);
+            }
         }
+        let of = |column: usize| -> Vec<(f64, f64)> {
+            table.rows.iter().map(|row| (row[0], row[column])).collect()
+        };
+        let mut strength = Panel::new("circulation", &over.name, "C");
+        let mut height = Panel::new("height", &over.name, "y");
+        strength.curve("", Style::Line, of(1));
+        height.curve("vortex centre", Style::Line, of(2));
+        height.curve(&format!("largest {shade}"), Style::Dashed, of(3));
+        let (places, strengths): (Vec<f64>, Vec<f64>) = of(1).into_iter().unzip();
+        // A largest value at the end of the range says nothing of a maximum.
+        if let Some([place, value]) = crest(&strengths, &places) {
+            for (what, ours) in [
+                ("largest circulation", value),
+                ("where it is reached", place),
+            ] {
+                outcome.numbers.push(Number {
+                    figure: figure.to_owned(),
+                    quantity: named(case, what),
+                    ours: Some(ours),
+                    printed: case.printed.get(what).copied(),
+                    note: case.note.clone(),
+                });
+            }
+        }
+        picture(&mut outcome, &case.label, &[strength, height], table);
     }
-    picture(&mut outcome, "", &[strength, height], table);
     Ok(outcome)
 }
 
@@ -224,8 +224,15 @@ fn vortex(found: &Pattern, [u, v]: [usize; 2], shade: usize, side: f64) -> Resul
     Ok(Vortex {
         circulation: circulation.abs(),
         centre: cy,
-        densest: crest(&largest, y),
+        densest: densest(&largest, y),
     })
+}
+
+/// The height of the largest of a field's values.
+fn densest(largest: &[f64], y: &[f64]) -> f64 {
+    let highest = largest.iter().zip(y).max_by(|a, b| a.0.total_cmp(b.0));
+    let on_grid = highest.map_or(f64::NAN, |(_, y)| *y);
+    crest(largest, y).map_or(on_grid, |[place, _]| place)
 }
 
 /// Where in a cell both components vanish, in parts of the cell: Newton on the bilinear interpolants.
@@ -251,19 +258,22 @@ fn rest(u: [f64; 4], v: [f64; 4]) -> [f64; 2] {
     [place[0], place[1]]
 }
 
-/// Where evenly spaced values are largest: the crest of the parabola through three of them.
-fn crest(values: &[f64], y: &[f64]) -> f64 {
+/// Where evenly spaced values have a maximum between the ends, and its value: the crest of the
+/// parabola through three of them.
+fn crest(values: &[f64], places: &[f64]) -> Option<[f64; 2]> {
     let highest = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-    let j = highest.map_or(0, |(j, _)| j);
-    if j == 0 || j + 1 == values.len() {
-        return y[j];
+    let (j, &at) = highest.filter(|(j, _)| (1..values.len() - 1).contains(j))?;
+    let (before, after) = (values[j - 1], values[j + 1]);
+    let (tilt, bend) = (after - before, before - 2.0 * at + after);
+    let (back, step) = (places[j] - places[j - 1], places[j + 1] - places[j]);
+    // A place that failed leaves a gap.
+    if bend == 0.0 || (back - step).abs() > 1e-9 * step.abs() {
+        return Some([places[j], at]);
     }
-    let [before, at, after] = [values[j - 1], values[j], values[j + 1]];
-    let bend = before - 2.0 * at + after;
-    match bend < 0.0 {
-        true => y[j] + 0.5 * (before - after) / bend * (y[j + 1] - y[j]),
-        false => y[j],
-    }
+    Some([
+        places[j] - 0.5 * tilt / bend * step,
+        at - tilt * tilt / (8.0 * bend),
+    ])
 }
 
 /// Interpolation on the uniform grid, periodic in x.
