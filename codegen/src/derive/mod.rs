@@ -2,8 +2,10 @@
 //!
 //! Each pass is a function from one type to the next; [`derive()`] shows the whole of it.
 
+mod base;
 mod boundary;
 mod case;
+mod check;
 mod closure;
 mod expand;
 mod form;
@@ -13,6 +15,7 @@ mod pairing;
 mod parity;
 mod wall;
 
+pub use base::BaseRow;
 pub use boundary::{Combination, Symbol};
 pub use case::{AdjointCondition, Case};
 pub use closure::CaseClosure;
@@ -26,6 +29,7 @@ pub use wall::{BaseCondition, WallCondition};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};
 use crate::graph::{Graph, Id, Rational};
 use crate::model::Model;
+use base::BaseProblem;
 use expand::{Expander, Inexpandable};
 use num_traits::One;
 
@@ -67,19 +71,6 @@ pub struct Operators {
     pub cases: Vec<Case>,
     /// Output functionals, expanded.
     pub outputs: Vec<Form>,
-}
-
-/// A balance restricted to the base state.
-#[derive(Clone, Debug)]
-pub struct BaseRow {
-    pub balance: usize,
-    /// With laws opaque.
-    pub residual: Id,
-    /// The base field it is collocated with; `None` where the whole base is given in closed form
-    /// and the row is there to be checked.
-    pub field: Option<usize>,
-    /// Highest y-derivative of that field.
-    pub order: u8,
 }
 
 /// Derives all operators to the given order.
@@ -275,232 +266,6 @@ impl<'a> Deriver<'a> {
             .collect()
     }
 
-    fn check_counts(&self, profiles: usize, mistakes: &mut Vec<Diagnostic>) -> bool {
-        let (balances, fields) = (self.model.balances.len(), profiles);
-        if balances == fields {
-            return true;
-        }
-        let place = match self.model.balances.last() {
-            Some(balance) if balances > fields => balance.location.clone(),
-            _ => self.model.fields.last().map_or(
-                Location {
-                    file: 0,
-                    range: 0..0,
-                },
-                |f| f.location.clone(),
-            ),
-        };
-        let message = format!("{balances} balance(s) for {fields} field(s)");
-        let what = if balances > fields {
-            "a surplus balance"
-        } else {
-            "a field without a balance"
-        };
-        mistakes.push(
-            Diagnostic::new(place, message, "as many balances as fields")
-                .hint(format!("there is {what}")),
-        );
-        false
-    }
-
-    fn check_orders(&self, forms: &[Form], mistakes: &mut Vec<Diagnostic>) {
-        for (form, balance) in forms.iter().zip(&self.model.balances) {
-            let jets = || form.terms.keys().flatten();
-            let place = balance.location.clone();
-            if let Some(jet) = jets().find(|j| j.t > 1) {
-                let name = &self.model.fields[usize::from(jet.field)].name;
-                let message = format!(
-                    "`{}` holds a second time derivative of `{name}`",
-                    balance.name
-                );
-                mistakes.push(
-                    Diagnostic::new(place, message, "balances of first order in time")
-                        .hint("introduce a field for the first time derivative"),
-                );
-            } else if let Some(jet) = jets().find(|j| j.y > 2) {
-                let name = &self.model.fields[usize::from(jet.field)].name;
-                let message = format!(
-                    "`{}` holds a {}-fold y-derivative of `{name}`",
-                    balance.name, jet.y
-                );
-                mistakes.push(
-                    Diagnostic::new(place, message, "y-derivatives of second order at most")
-                        .hint("introduce an auxiliary field for the second derivative"),
-                );
-            } else if self.model.interval.is_none() && jets().any(|j| j.y > 0) {
-                let message = format!("`{}` holds a cross-stream derivative", balance.name);
-                mistakes.push(Diagnostic::new(
-                    place,
-                    message,
-                    "no such derivative, for want of the coordinate",
-                ));
-            }
-        }
-    }
-
-    /// Every field must occur linearly in some balance.
-    fn check_determined(&self, linear: &[Term], profiles: usize, mistakes: &mut Vec<Diagnostic>) {
-        for field in 0..profiles {
-            if !linear.iter().any(|t| usize::from(t.jet.field) == field) {
-                let info = &self.model.fields[field];
-                let message = format!("no balance determines the field `{}`", info.name);
-                let expected = "a field that occurs linearly in some balance";
-                mistakes.push(Diagnostic::new(info.location.clone(), message, expected));
-            }
-        }
-        for (row, balance) in self.model.balances.iter().enumerate() {
-            if !linear.iter().any(|t| t.row == row) {
-                let message = format!("the balance `{}` has no linear part", balance.name);
-                let expected = "a balance that is linear in some field to lowest order";
-                mistakes.push(Diagnostic::new(balance.location.clone(), message, expected));
-            }
-        }
-    }
-
-    /// Which balances, conditions and integrals the base state has to obey.
-    fn base_problem(
-        &mut self,
-        balances: &[Form],
-        mistakes: &mut Vec<Diagnostic>,
-    ) -> Option<BaseProblem> {
-        let model = self.model;
-        let closed = &model.base.closed;
-        let mut opener = Opener::new(&model.laws, closed, &self.uniform);
-        let mut solved: Vec<usize> = (0..closed.len()).filter(|&f| closed[f].is_none()).collect();
-        solved.sort_by_key(|&f| self.uniform[f]);
-        let profiles: Vec<usize> = solved
-            .iter()
-            .copied()
-            .filter(|&f| !self.uniform[f])
-            .collect();
-        let mut rows = Vec::new();
-        let mut orders = Vec::new();
-        for (balance, form) in balances.iter().enumerate() {
-            let residual = form.base(self.graph);
-            if self.graph.vanishes(residual) {
-                continue;
-            }
-            let opened = opener.at_base(self.graph, residual);
-            if self.graph.vanishes(opened) {
-                continue;
-            }
-            let mut line = vec![None; profiles.len()];
-            for node in self.graph.topological(&[opened]) {
-                if let crate::graph::Node::Base(field, order) = self.graph.node(node)
-                    && let Some(column) = profiles.iter().position(|f| f == field)
-                {
-                    let entry: &mut Option<i64> = &mut line[column];
-                    *entry = Some(entry.unwrap_or(0).max(i64::from(*order)));
-                }
-            }
-            rows.push((balance, residual, opened));
-            orders.push(line);
-        }
-        if profiles.is_empty() {
-            // A closed base that does not satisfy a balance shows when it is evaluated, where a
-            // symbolic test could not see through a root.
-            let integrals = self.base_integrals(&mut Vec::new());
-            let rows = rows.into_iter().map(|(balance, residual, _)| BaseRow {
-                balance,
-                residual,
-                field: None,
-                order: 0,
-            });
-            return Some(BaseProblem {
-                rows: rows.collect(),
-                solved,
-                integrals,
-                conditions: 0,
-            });
-        }
-        let place = model.base.location.clone();
-        if rows.len() != profiles.len() {
-            let names: Vec<_> = profiles
-                .iter()
-                .map(|&f| format!("`{}`", model.fields[f].name))
-                .collect();
-            let message = format!(
-                "the base state has {} unknown field(s) ({}) for {} balance(s)",
-                profiles.len(),
-                names.join(", "),
-                rows.len()
-            );
-            let held: Vec<_> = rows
-                .iter()
-                .map(|(b, ..)| format!("`{}`", model.balances[*b].name))
-                .collect();
-            mistakes.push(
-                Diagnostic::new(
-                    place,
-                    message,
-                    "as many as there are balances that do not vanish identically",
-                )
-                .hint(format!(
-                    "balances left in the base state: {}",
-                    if held.is_empty() {
-                        "none".into()
-                    } else {
-                        held.join(", ")
-                    }
-                )),
-            );
-            return None;
-        }
-        let Some((total, pairing)) = pairing::assign(&orders) else {
-            let message = "the base balances cannot be paired with the base fields";
-            mistakes.push(Diagnostic::new(
-                place,
-                message,
-                "one balance for each field that is solved for",
-            ));
-            return None;
-        };
-        let uniform_solved = solved.len() - profiles.len();
-        let conditions = total as usize + uniform_solved;
-        let base_rows = rows
-            .into_iter()
-            .enumerate()
-            .map(|(i, (balance, residual, _))| BaseRow {
-                balance,
-                residual,
-                field: Some(profiles[pairing[i]]),
-                order: orders[i][pairing[i]].unwrap_or(0) as u8,
-            })
-            .collect();
-        let integrals = self.base_integrals(mistakes);
-        Some(BaseProblem {
-            rows: base_rows,
-            solved,
-            integrals,
-            conditions,
-        })
-    }
-
-    fn base_integrals(&mut self, mistakes: &mut Vec<Diagnostic>) -> Vec<(Id, Id)> {
-        let model = self.model;
-        let mut integrals = Vec::new();
-        let declared = model.base.integrals.iter();
-        let unknowns = model.mean.iter().filter_map(|closure| match closure {
-            crate::model::Closure::Unknown { field, integral }
-                if model.base.closed[*field].is_none() =>
-            {
-                Some(integral)
-            }
-            _ => None,
-        });
-        for integral in declared.chain(unknowns) {
-            match self.base_part(integral.integrand) {
-                Some(integrand) => integrals.push((integrand, integral.value)),
-                None => mistakes.push(Diagnostic::new(
-                    integral.location.clone(),
-                    "the integrand has no value in the base state",
-                    "an expression that is smooth at the base state",
-                )),
-            }
-        }
-        integrals
-    }
-
     /// Switches that guard boundary conditions.
     fn switches(&self) -> Vec<usize> {
         let conditions = self
@@ -543,14 +308,4 @@ impl<'a> Deriver<'a> {
         }
         Some(all)
     }
-}
-
-/// What the base state has to obey.
-struct BaseProblem {
-    rows: Vec<BaseRow>,
-    solved: Vec<usize>,
-    /// Integrands and values.
-    integrals: Vec<(Id, Id)>,
-    /// How many conditions (at walls and integrals) determine the base state.
-    conditions: usize,
 }

@@ -1,6 +1,7 @@
 //! The checked model: names resolved, definitions expanded, every expression a node of one graph.
 
 mod amplitude;
+mod declaration;
 mod formula;
 mod import;
 mod mistake;
@@ -8,6 +9,7 @@ mod parameter;
 mod resolve;
 mod scope;
 mod statement;
+mod switch;
 
 pub use resolve::resolve;
 

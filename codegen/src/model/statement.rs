@@ -8,11 +8,8 @@ use crate::diagnostic::{Diagnostic, nearest};
 use crate::graph::{Jet, Node, Operator};
 use crate::syntax::tree::*;
 
-/// More fields than any model needs (jets count them in a byte).
-const MOST_FIELDS: usize = 14;
-
 /// Collects mistakes and goes on.
-fn keep<T>(result: Resolved<T>, mistakes: &mut Vec<Diagnostic>) -> Option<T> {
+pub(super) fn keep<T>(result: Resolved<T>, mistakes: &mut Vec<Diagnostic>) -> Option<T> {
     result.map_err(|mistake| mistakes.push(mistake)).ok()
 }
 
@@ -32,17 +29,17 @@ pub(super) fn model(
         ));
         return None;
     };
-    coordinate_names(tree, names, mistakes);
-    parameters(tree, names, mistakes);
-    let fields = fields(tree, names, mistakes);
+    declaration::coordinate_names(tree, names, mistakes);
+    declaration::parameters(tree, names, mistakes);
+    let fields = declaration::fields(tree, names, mistakes);
     for definition in tree.definitions.iter().filter(|d| !d.is_law) {
-        declare(definition, names, mistakes);
+        declaration::declare(definition, names, mistakes);
     }
     let mut laws = bind_imports(imported, names, mistakes);
     for definition in tree.definitions.iter().filter(|d| d.is_law) {
         laws.extend(law(definition, laws.len(), names, mistakes));
     }
-    let interval = interval(tree, names, mistakes);
+    let interval = declaration::interval(tree, names, mistakes);
     let balances = tree
         .balances
         .iter()
@@ -108,139 +105,6 @@ pub(super) fn model(
         graph: std::mem::take(&mut names.graph),
         names: std::mem::replace(names, Names::new()),
     })
-}
-
-fn coordinate_names(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
-    let (periodic, bounded): (Vec<_>, Vec<_>) =
-        tree.coordinates.iter().partition(|c| c.interval.is_none());
-    match periodic.as_slice() {
-        [one] => names.periodic = one.name.text.clone(),
-        [] => mistakes.push(Diagnostic::new(
-            beginning(),
-            "there is no periodic coordinate",
-            "`coordinates { x: periodic; }`",
-        )),
-        [_, second, ..] => mistakes.push(Diagnostic::new(
-            second.name.location.clone(),
-            "there are two periodic coordinates",
-            "one periodic coordinate",
-        )),
-    }
-    if let Some(first) = bounded.first() {
-        names.coordinate = Some(first.name.text.clone());
-    }
-    if let Some(second) = bounded.get(1) {
-        let message = "there are two cross-stream coordinates";
-        mistakes.push(Diagnostic::new(
-            second.name.location.clone(),
-            message,
-            "at most one",
-        ));
-    }
-}
-
-fn interval(
-    tree: &ModelTree,
-    names: &mut Names,
-    mistakes: &mut Vec<Diagnostic>,
-) -> Option<Interval> {
-    let item = tree.coordinates.iter().find(|c| c.interval.is_some())?;
-    let (lower, upper) = item.interval.as_ref()?;
-    let lower = keep(names.resolve(lower, Context::Constant), mistakes)?;
-    let upper = keep(names.resolve(upper, Context::Constant), mistakes)?;
-    if lower == upper {
-        let message = "the interval is empty";
-        mistakes.push(Diagnostic::new(
-            item.name.location.clone(),
-            message,
-            "two different ends",
-        ));
-    }
-    Some(Interval {
-        name: item.name.text.clone(),
-        lower,
-        upper,
-    })
-}
-
-fn parameters(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
-    for item in &tree.parameters {
-        keep(check_name(&item.name), mistakes);
-        if names.parameters.iter().any(|p| p.name == item.name.text) {
-            mistakes.push(twice(&item.name));
-            continue;
-        }
-        if let Some(parameter) = keep(names.parameter(item), mistakes) {
-            names.parameters.push(parameter);
-            names.used.push(false);
-        }
-    }
-}
-
-fn fields(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) -> Vec<Field> {
-    let mut fields = Vec::new();
-    let unknowns = tree.mean.iter().filter_map(|item| match item {
-        MeanItem::Unknown(name, _) => Some((name, true, None, String::new())),
-        _ => None,
-    });
-    let profiles = tree
-        .fields
-        .iter()
-        .map(|f| (&f.name, false, f.range.as_ref(), f.doc.clone()));
-    for (name, uniform, range, doc) in profiles.chain(unknowns) {
-        keep(check_name(name), mistakes);
-        let taken = names.parameters.iter().any(|p| p.name == name.text)
-            || names.fields.contains_key(&name.text)
-            || names.coordinate.as_deref() == Some(&name.text)
-            || names.periodic == name.text;
-        if taken {
-            mistakes.push(twice(name));
-            continue;
-        }
-        let (mut lower, mut upper) = (f64::NEG_INFINITY, f64::INFINITY);
-        if let Some((from, to)) = range {
-            if let Some(from) = from {
-                lower = keep(names.constant(from), mistakes).unwrap_or(lower);
-            }
-            if let Some(to) = to {
-                upper = keep(names.constant(to), mistakes).unwrap_or(upper);
-            }
-        }
-        names.fields.insert(name.text.clone(), fields.len());
-        let location = name.location.clone();
-        fields.push(Field {
-            name: name.text.clone(),
-            doc,
-            lower,
-            upper,
-            uniform,
-            location,
-        });
-    }
-    names.field_count = fields.len();
-    if fields.is_empty() || fields.len() > MOST_FIELDS {
-        let message = format!("the model has {} fields", fields.len());
-        mistakes.push(Diagnostic::new(
-            beginning(),
-            message,
-            "1 to 14 fields: `fields { u; v; }`",
-        ));
-    }
-    fields
-}
-
-fn declare(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
-    keep(check_name(&definition.name), mistakes);
-    let text = &definition.name.text;
-    let taken = names.fields.contains_key(text)
-        || names.parameters.iter().any(|p| &p.name == text)
-        || names.operator(text).is_some();
-    let previous = names.scopes[0]
-        .definitions
-        .insert(text.clone(), definition.clone());
-    if taken || previous.is_some() {
-        mistakes.push(twice(&definition.name));
-    }
 }
 
 fn law(

@@ -4,6 +4,7 @@
 //! mistake ends the statement it stands in; parsing goes on with the next, so that one run reports
 //! many.
 
+mod block;
 mod expression;
 mod item;
 mod lexical;

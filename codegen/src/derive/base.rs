@@ -1,0 +1,175 @@
+//! The base state as a problem of its own: its balances, what they are solved for, its integrals.
+
+use super::form::Form;
+use super::{Deriver, Opener, pairing};
+use crate::diagnostic::Diagnostic;
+use crate::graph::{Id, Node};
+
+/// A balance restricted to the base state.
+#[derive(Clone, Debug)]
+pub struct BaseRow {
+    pub balance: usize,
+    /// With laws opaque.
+    pub residual: Id,
+    /// The base field it is collocated with; `None` where the whole base is given in closed form
+    /// and the row is there to be checked.
+    pub field: Option<usize>,
+    /// Highest y-derivative of that field.
+    pub order: u8,
+}
+
+/// What the base state has to obey.
+pub(super) struct BaseProblem {
+    pub rows: Vec<BaseRow>,
+    pub solved: Vec<usize>,
+    /// Integrands and values.
+    pub integrals: Vec<(Id, Id)>,
+    /// How many conditions (at walls and integrals) determine the base state.
+    pub conditions: usize,
+}
+
+impl Deriver<'_> {
+    /// Which balances, conditions and integrals the base state has to obey.
+    pub(super) fn base_problem(
+        &mut self,
+        balances: &[Form],
+        mistakes: &mut Vec<Diagnostic>,
+    ) -> Option<BaseProblem> {
+        let model = self.model;
+        let closed = &model.base.closed;
+        let mut opener = Opener::new(&model.laws, closed, &self.uniform);
+        let mut solved: Vec<usize> = (0..closed.len()).filter(|&f| closed[f].is_none()).collect();
+        solved.sort_by_key(|&f| self.uniform[f]);
+        let profiles: Vec<usize> = solved
+            .iter()
+            .copied()
+            .filter(|&f| !self.uniform[f])
+            .collect();
+        let mut rows = Vec::new();
+        let mut orders = Vec::new();
+        for (balance, form) in balances.iter().enumerate() {
+            let residual = form.base(self.graph);
+            if self.graph.vanishes(residual) {
+                continue;
+            }
+            let opened = opener.at_base(self.graph, residual);
+            if self.graph.vanishes(opened) {
+                continue;
+            }
+            let mut line = vec![None; profiles.len()];
+            for node in self.graph.topological(&[opened]) {
+                if let Node::Base(field, order) = self.graph.node(node)
+                    && let Some(column) = profiles.iter().position(|f| f == field)
+                {
+                    let entry: &mut Option<i64> = &mut line[column];
+                    *entry = Some(entry.unwrap_or(0).max(i64::from(*order)));
+                }
+            }
+            rows.push((balance, residual, opened));
+            orders.push(line);
+        }
+        if profiles.is_empty() {
+            // A closed base that does not satisfy a balance shows when it is evaluated, where a
+            // symbolic test could not see through a root.
+            let integrals = self.base_integrals(&mut Vec::new());
+            let rows = rows.into_iter().map(|(balance, residual, _)| BaseRow {
+                balance,
+                residual,
+                field: None,
+                order: 0,
+            });
+            return Some(BaseProblem {
+                rows: rows.collect(),
+                solved,
+                integrals,
+                conditions: 0,
+            });
+        }
+        let place = model.base.location.clone();
+        if rows.len() != profiles.len() {
+            let names: Vec<_> = profiles
+                .iter()
+                .map(|&f| format!("`{}`", model.fields[f].name))
+                .collect();
+            let message = format!(
+                "the base state has {} unknown field(s) ({}) for {} balance(s)",
+                profiles.len(),
+                names.join(", "),
+                rows.len()
+            );
+            let held: Vec<_> = rows
+                .iter()
+                .map(|(b, ..)| format!("`{}`", model.balances[*b].name))
+                .collect();
+            mistakes.push(
+                Diagnostic::new(
+                    place,
+                    message,
+                    "as many as there are balances that do not vanish identically",
+                )
+                .hint(format!(
+                    "balances left in the base state: {}",
+                    if held.is_empty() {
+                        "none".into()
+                    } else {
+                        held.join(", ")
+                    }
+                )),
+            );
+            return None;
+        }
+        let Some((total, pairing)) = pairing::assign(&orders) else {
+            let message = "the base balances cannot be paired with the base fields";
+            mistakes.push(Diagnostic::new(
+                place,
+                message,
+                "one balance for each field that is solved for",
+            ));
+            return None;
+        };
+        let uniform_solved = solved.len() - profiles.len();
+        let conditions = total as usize + uniform_solved;
+        let base_rows = rows
+            .into_iter()
+            .enumerate()
+            .map(|(i, (balance, residual, _))| BaseRow {
+                balance,
+                residual,
+                field: Some(profiles[pairing[i]]),
+                order: orders[i][pairing[i]].unwrap_or(0) as u8,
+            })
+            .collect();
+        let integrals = self.base_integrals(mistakes);
+        Some(BaseProblem {
+            rows: base_rows,
+            solved,
+            integrals,
+            conditions,
+        })
+    }
+
+    fn base_integrals(&mut self, mistakes: &mut Vec<Diagnostic>) -> Vec<(Id, Id)> {
+        let model = self.model;
+        let mut integrals = Vec::new();
+        let declared = model.base.integrals.iter();
+        let unknowns = model.mean.iter().filter_map(|closure| match closure {
+            crate::model::Closure::Unknown { field, integral }
+                if model.base.closed[*field].is_none() =>
+            {
+                Some(integral)
+            }
+            _ => None,
+        });
+        for integral in declared.chain(unknowns) {
+            match self.base_part(integral.integrand) {
+                Some(integrand) => integrals.push((integrand, integral.value)),
+                None => mistakes.push(Diagnostic::new(
+                    integral.location.clone(),
+                    "the integrand has no value in the base state",
+                    "an expression that is smooth at the base state",
+                )),
+            }
+        }
+        integrals
+    }
+}
