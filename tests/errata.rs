@@ -85,6 +85,21 @@ fn a_sign_planted_in_a_printed_formula_is_found() {
 }
 
 #[test]
+fn a_formula_may_be_printed_for_set_parameters() {
+    // f5 of P (2.20) for e = 0.9: 1 − e² = 19/100.
+    let entry = |set: &str| {
+        against(&format!(
+            "[[abbreviation]]\nname = \"l\"\ntext = \"sqrt(3/32)*(1/n - 1)/(1 - (1 - sqrt(3/8))*n)\"\n[[formula]]\nnumber = \"f5\"\nabout = {{ law = \"D\" }}\nset = [\"{set}\"]\nprinted = \"19/100/gamma_c/l*n*T^(3/2)\""
+        ))
+    };
+    assert_eq!(entry("e=0.9").status, 0, "{}", entry("e=0.9").err);
+    assert_eq!(entry("e=0.8").status, 3);
+    let answer = entry("e=much");
+    assert_eq!(answer.status, 2);
+    assert!(answer.err.contains("value of `e` `much`"), "{}", answer.err);
+}
+
+#[test]
 fn a_slip_that_is_none_is_refused() {
     let text = "[[formula]]\nnumber = \"(2.24)\"\nabout = { base = \"momentum_y\" }\nprinted = \"-dy(p0) - n0/S = 0\"\n[[formula.slip]]\nprinted = \"n0/S\"\nderived = \"1/S*n0\"\nverdict = \"misprint\"";
     let answer = against(text);

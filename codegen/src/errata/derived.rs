@@ -2,7 +2,7 @@
 
 use super::{Formula, Subject};
 use crate::derive::{Case, Derivation, Form};
-use crate::diagnostic::{Diagnostic, Diagnostics, Location, nearest};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, SourceFile, nearest};
 use crate::graph::{Graph, Id, Jet, Rational};
 use num_traits::One;
 
@@ -18,7 +18,11 @@ pub(super) enum Value {
 }
 
 /// The derived side of a formula.
-pub(super) fn subject(derivation: &mut Derivation, formula: &Formula) -> Found<Id> {
+pub(super) fn subject(
+    derivation: &mut Derivation,
+    formula: &Formula,
+    setting: &Setting,
+) -> Found<Id> {
     let named = |what: &str, name: &str, names: &[String]| {
         let found = names.iter().position(|n| n == name);
         found.ok_or_else(|| absent(formula, what, name, names))
@@ -75,7 +79,7 @@ pub(super) fn subject(derivation: &mut Derivation, formula: &Formula) -> Found<I
             operators.nonlinear[degree - 2][row].terms.clone()
         }
         Subject::Condition(end, name) => {
-            let (case, field) = (case(derivation, formula)?, field(name)?);
+            let (case, field) = (case(derivation, formula, setting)?, field(name)?);
             let mut all = case.conditions.iter();
             let found = all.find(|c| c.end == *end && c.field == field);
             let found =
@@ -83,7 +87,7 @@ pub(super) fn subject(derivation: &mut Derivation, formula: &Formula) -> Found<I
             found.form.terms.clone()
         }
         Subject::AdjointCondition(end, name) => {
-            let (case, row) = (case(derivation, formula)?, paired(name)?);
+            let (case, row) = (case(derivation, formula, setting)?, paired(name)?);
             let all = case.adjoint.as_deref().unwrap_or_default();
             let mut all = all.iter();
             let found = all.find(|c| c.end == *end && c.balance == row);
@@ -127,8 +131,7 @@ fn expression(graph: &mut Graph, form: &Form) -> Id {
 }
 
 /// The case of the switches that the formula is set in: the default choices where it says nothing.
-fn case<'d>(derivation: &'d Derivation, formula: &Formula) -> Found<&'d Case> {
-    let setting = setting(derivation, formula)?;
+fn case<'d>(derivation: &'d Derivation, formula: &Formula, setting: &Setting) -> Found<&'d Case> {
     let operators = &derivation.operators;
     let chosen = |switch: usize| {
         let set = setting.iter().find_map(|(parameter, value)| match value {
@@ -143,26 +146,35 @@ fn case<'d>(derivation: &'d Derivation, formula: &Formula) -> Found<&'d Case> {
 }
 
 /// The formula's parameters by index.
-pub(super) fn setting(derivation: &Derivation, formula: &Formula) -> Found<Setting> {
+pub(super) fn setting(derivation: &mut Derivation, formula: &Formula) -> Found<Setting> {
     let parameters = &derivation.model.parameters;
     let names: Vec<String> = parameters.iter().map(|p| p.name.clone()).collect();
     let mut setting = Setting::new();
-    for (name, value) in &formula.setting {
+    for (name, text) in &formula.setting {
         let index = names.iter().position(|n| n == name);
         let index = index.ok_or_else(|| absent(formula, "parameter", name, &names))?;
-        let choices = &parameters[index].choices;
-        let value = match choices.iter().position(|c| c == value) {
+        let choices = derivation.model.parameters[index].choices.clone();
+        let value = match choices.iter().position(|choice| choice == text) {
             Some(choice) => Value::Choice(choice),
             None => {
-                let number = value.parse::<i64>().ok().filter(|_| choices.is_empty());
                 let what = format!("value of `{name}`");
-                let number = number.ok_or_else(|| absent(formula, &what, value, choices))?;
-                Value::Number(Rational::from_integer(number.into()))
+                let number = number(derivation, text).filter(|_| choices.is_empty());
+                Value::Number(number.ok_or_else(|| absent(formula, &what, text, &choices))?)
             }
         };
         setting.push((index, value));
     }
     Ok(setting)
+}
+
+/// The rational that a text such as 0.9 or 1/3 stands for.
+fn number(derivation: &mut Derivation, text: &str) -> Option<Rational> {
+    let source = SourceFile {
+        path: String::new(),
+        text: text.to_owned(),
+    };
+    let id = derivation.model.read(&source, &[]).ok()?;
+    derivation.model.graph.as_number(id).cloned()
 }
 
 /// A subject that the model does not have.

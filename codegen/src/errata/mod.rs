@@ -87,8 +87,8 @@ pub fn compare(
     formula: &Formula,
 ) -> Result<Comparison, Diagnostics> {
     let printed = printed(derivation, abbreviations, &formula.source)?;
-    let derived = derived::subject(derivation, formula)?;
     let setting = derived::setting(derivation, formula)?;
+    let derived = derived::subject(derivation, formula, &setting)?;
     let law = matches!(formula.subject, Subject::Law(_));
     let mut sides = [printed, derived].map(|id| {
         let id = terms::carry_out(derivation, id, law);
