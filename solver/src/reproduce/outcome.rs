@@ -1,6 +1,6 @@
 //! What a task of a study gives: pictures, tables, arrays, numbers.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// One number beside the printed one.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -16,6 +16,7 @@ pub struct Number {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Table {
     pub header: Vec<String>,
+    #[serde(deserialize_with = "with_gaps")]
     pub rows: Vec<Vec<f64>>,
 }
 
@@ -76,4 +77,11 @@ impl Table {
         }
         text
     }
+}
+
+/// Rows as JSON keeps them: what is not a finite number comes back from `null`.
+fn with_gaps<'d, D: Deserializer<'d>>(input: D) -> Result<Vec<Vec<f64>>, D::Error> {
+    let rows = Vec::<Vec<Option<f64>>>::deserialize(input)?;
+    let filled = |row: Vec<Option<f64>>| row.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect();
+    Ok(rows.into_iter().map(filled).collect())
 }
