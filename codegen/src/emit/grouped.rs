@@ -164,17 +164,16 @@ impl Writer<'_> {
             factors.remove(position);
         }
         let mut jets = monomial.clone();
-        let atom = factors
-            .iter()
-            .position(|(base, e)| e.is_one() && matches!(self.node(*base), Node::BaseLaw(_)));
-        let (law, inner) = match atom {
+        let mut numbered = factors.iter().enumerate();
+        let first = numbered.find_map(|(position, (base, e))| match self.node(*base) {
+            Node::BaseLaw(atom) if e.is_one() => Some((position, atom)),
+            _ => None,
+        });
+        let (law, inner) = match first {
             None => (None, (None, Vec::new())),
-            Some(position) => {
+            Some((position, atom)) => {
                 let (id, _) = factors.remove(position);
-                match self.node(id) {
-                    Node::BaseLaw(atom) => (Some(atom.law), (Some(id), take_own(atom, &mut jets))),
-                    _ => (None, (Some(id), Vec::new())),
-                }
+                (Some(atom.law), (Some(id), take_own(atom, &mut jets)))
             }
         };
         factors.sort();
@@ -356,12 +355,8 @@ fn take_own(atom: &LawAtom, jets: &mut Monomial) -> Monomial {
                 .filter(of_field)
                 .min_by_key(|j| j.t + j.x + j.y)
                 .copied();
-            if let Some(lowest) = lowest {
-                jets.retain({
-                    let mut gone = false;
-                    move |jet| gone || *jet != lowest || std::mem::replace(&mut gone, true)
-                });
-                own.push(lowest);
+            if let Some(position) = lowest.and_then(|jet| jets.iter().position(|j| *j == jet)) {
+                own.push(jets.remove(position));
             }
         }
     }

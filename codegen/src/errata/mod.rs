@@ -89,16 +89,17 @@ pub fn compare(
     let printed = printed(derivation, abbreviations, &formula.source)?;
     let setting = derived::setting(derivation, formula)?;
     let derived = derived::subject(derivation, formula, &setting)?;
-    let law = matches!(formula.subject, Subject::Law(_));
-    let mut sides = [printed, derived].map(|id| {
-        let id = terms::carry_out(derivation, id, law);
-        let id = terms::settle(&mut derivation.model.graph, id, &setting);
-        let graph = &mut derivation.model.graph;
+    let mut sides = [printed, derived].map(|id| match formula.subject {
         // A law is one term, whatever it is a function of.
-        if law {
-            Form::constant(graph, id)
-        } else {
-            Form::polynomial(graph, id)
+        Subject::Law(_) => {
+            let id = terms::open_law(derivation, id);
+            let id = terms::settle(&mut derivation.model.graph, id, &setting);
+            Form::constant(&derivation.model.graph, id)
+        }
+        _ => {
+            let id = terms::carry_out(derivation, id);
+            let id = terms::settle(&mut derivation.model.graph, id, &setting);
+            Form::polynomial(&mut derivation.model.graph, id)
         }
     });
     if formula.subject.is_equation() {
@@ -139,7 +140,7 @@ fn relative_factor(graph: &mut Graph, printed: &Form, derived: &Form) -> Id {
         Some(monomial) => {
             let ratio = graph.div(derived.terms[monomial], printed.terms[monomial]);
             let ratio = graph.collect(ratio);
-            // Of expressions without jets only a sign is taken out.
+            // Of expressions without jets only a number or a sign is taken out.
             match (monomial.is_empty(), graph.as_number(ratio)) {
                 (true, Some(_)) | (false, _) => ratio,
                 (true, None) => sign(graph, derived.terms[monomial], printed.terms[monomial]),

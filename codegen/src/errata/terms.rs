@@ -26,16 +26,20 @@ fn value(setting: &Setting, parameter: usize) -> Option<&Value> {
     found.map(|(_, value)| value)
 }
 
+/// The formula of a law, opened down to fields and parameters.
+pub(super) fn open_law(derivation: &mut Derivation, id: Id) -> Id {
+    let model = &mut derivation.model;
+    let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
+    Opener::new(&model.laws, &model.base.closed, &uniform).at_state(&mut model.graph, id)
+}
+
 /// Derivatives carried out, base values that are known put in, laws that do not depend on a field
-/// not differentiated by it. The formula of a law is opened down to parameters.
-pub(super) fn carry_out(derivation: &mut Derivation, id: Id, law: bool) -> Id {
+/// not differentiated by it.
+pub(super) fn carry_out(derivation: &mut Derivation, id: Id) -> Id {
     let model = &mut derivation.model;
     let (laws, closed) = (&model.laws, &model.base.closed);
     let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
     let graph = &mut model.graph;
-    if law {
-        return Opener::new(laws, closed, &uniform).at_state(graph, id);
-    }
     let id = derive::carry_out(graph, id, &uniform);
     let depends = derive::dependence(graph, laws, uniform.len());
     let explicit = explicit(graph, laws);

@@ -42,7 +42,7 @@ impl Notation for Plain {
     }
 
     fn lines(&self, lines: &[String]) -> String {
-        lines.join(" + ")
+        lines.join(" + ").replace("+ -", "- ")
     }
 
     fn symbol(&self, name: &str, mark: &str, subscripts: &[&str]) -> String {
