@@ -54,8 +54,10 @@ structures! {
         /// Highest y-derivative of base fields that kernels ask for.
         pub base_order: usize,
         pub base: BaseInfo,
-        /// The field that each balance is collocated with.
-        pub pairing: Vec<usize>,
+        /// Points of the balances and values of the profiles in L.
+        pub offsets: OffsetsInfo,
+        /// The same for L†: rows are fields, columns balances.
+        pub adjoint_offsets: OffsetsInfo,
         pub parity: Option<ParityInfo>,
         /// L (no ∂t) and M0 (one ∂t); coefficients from [`KernelId::Linear`] in this order.
         pub linear: Vec<TermInfo>,
@@ -106,10 +108,19 @@ structures! {
         /// Whether each field has a closed form.
         pub closed: Vec<bool>,
         pub rows: Vec<BaseRowInfo>,
+        /// Points of `rows` and values of the profiles among `solved`.
+        pub offsets: OffsetsInfo,
         /// Base jets that each integrand depends on.
         pub integrals: Vec<Vec<BaseJet>>,
         /// Parameter and end of each automatic condition.
         pub automatic: Vec<AutomaticInfo>,
+    }
+
+    /// Row i is collocated at N + `rows[i]` points, column j has N + `columns[j]` values; as many
+    /// conditions as the values are more than the points.
+    pub struct OffsetsInfo {
+        pub rows: Vec<usize>,
+        pub columns: Vec<usize>,
     }
 
     /// ∂y^order of a base field.
@@ -122,9 +133,6 @@ structures! {
     /// each of `jets`.
     pub struct BaseRowInfo {
         pub balance: usize,
-        /// `None`: the base is in closed form, the row is a check.
-        pub field: Option<usize>,
-        pub order: usize,
         pub jets: Vec<BaseJet>,
     }
 
@@ -163,16 +171,12 @@ structures! {
 
     pub struct ConditionInfo {
         pub end: End,
-        /// The field whose collocation rows make room for it.
-        pub field: usize,
         /// Monomials of degree 1, 2, 3, …
         pub monomials: Vec<Vec<Jet>>,
     }
 
     pub struct AdjointConditionInfo {
         pub end: End,
-        /// The balance whose adjoint field's rows make room for it.
-        pub balance: usize,
         pub jets: Vec<Jet>,
     }
 

@@ -86,6 +86,23 @@ impl Scalar for C64 {
     }
 }
 
+/// Complex numbers as scalars of a type that can hold them: a real one loses nothing but rounding.
+pub fn scalars<T: Scalar>(values: &[C64]) -> Vec<T> {
+    let kept: Vec<T> = values.iter().map(|&v| T::from_complex(v)).collect();
+    debug_assert!(
+        {
+            let size = values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+            let lost = kept
+                .iter()
+                .zip(values)
+                .map(|(k, v)| (k.complex() - v).norm());
+            lost.fold(0.0, f64::max) <= 1e-6 * size
+        },
+        "a complex vector in real arithmetic"
+    );
+    kept
+}
+
 /// Runs a loop with the widest vectors that the processor has; the result is the same without.
 #[inline(always)]
 pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {

@@ -1,7 +1,8 @@
 //! The base state as a problem of its own: its balances, what they are solved for, its integrals.
 
 use super::form::Form;
-use super::{Deriver, Opener, pairing};
+use super::offsets::{Offsets, offsets};
+use super::{Deriver, Opener};
 use crate::diagnostic::Diagnostic;
 use crate::graph::{Id, Node};
 
@@ -11,17 +12,15 @@ pub struct BaseRow {
     pub balance: usize,
     /// With laws opaque.
     pub residual: Id,
-    /// The base field it is collocated with; `None` where the whole base is given in closed form
-    /// and the row is there to be checked.
-    pub field: Option<usize>,
-    /// Highest y-derivative of that field.
-    pub order: u8,
 }
 
 /// What the base state has to obey.
 pub(super) struct BaseProblem {
     pub rows: Vec<BaseRow>,
     pub solved: Vec<usize>,
+    /// Points of the rows and values of the solved profiles; none of either where the base is in closed form
+    /// and the rows are there to be checked.
+    pub offsets: Offsets,
     /// Integrands and values.
     pub integrals: Vec<(Id, Id)>,
     /// How many conditions (at walls and integrals) determine the base state.
@@ -61,26 +60,26 @@ impl Deriver<'_> {
                 if let Node::Base(field, order) = self.graph.node(node)
                     && let Some(column) = profiles.iter().position(|f| f == field)
                 {
-                    let entry: &mut Option<i64> = &mut line[column];
-                    *entry = Some(entry.unwrap_or(0).max(i64::from(*order)));
+                    let entry: &mut Option<u8> = &mut line[column];
+                    *entry = Some(entry.unwrap_or(0).max(*order));
                 }
             }
-            rows.push((balance, residual, opened));
+            rows.push(BaseRow { balance, residual });
             orders.push(line);
         }
         if profiles.is_empty() {
             // A closed base that does not satisfy a balance shows when it is evaluated, where a
             // symbolic test could not see through a root.
             let integrals = self.base_integrals(&mut Vec::new());
-            let rows = rows.into_iter().map(|(balance, residual, _)| BaseRow {
-                balance,
-                residual,
-                field: None,
-                order: 0,
-            });
+            let offsets = Offsets {
+                rows: vec![0; rows.len()],
+                columns: Vec::new(),
+                conditions: 0,
+            };
             return Some(BaseProblem {
-                rows: rows.collect(),
+                rows,
                 solved,
+                offsets,
                 integrals,
                 conditions: 0,
             });
@@ -99,7 +98,7 @@ impl Deriver<'_> {
             );
             let held: Vec<_> = rows
                 .iter()
-                .map(|(b, ..)| format!("`{}`", model.balances[*b].name))
+                .map(|row| format!("`{}`", model.balances[row.balance].name))
                 .collect();
             mistakes.push(
                 Diagnostic::new(
@@ -118,7 +117,7 @@ impl Deriver<'_> {
             );
             return None;
         }
-        let Some((total, pairing)) = pairing::assign(&orders) else {
+        let Some(offsets) = offsets(&orders) else {
             let message = "the base balances cannot be paired with the base fields";
             mistakes.push(Diagnostic::new(
                 place,
@@ -128,21 +127,12 @@ impl Deriver<'_> {
             return None;
         };
         let uniform_solved = solved.len() - profiles.len();
-        let conditions = total as usize + uniform_solved;
-        let base_rows = rows
-            .into_iter()
-            .enumerate()
-            .map(|(i, (balance, residual, _))| BaseRow {
-                balance,
-                residual,
-                field: Some(profiles[pairing[i]]),
-                order: orders[i][pairing[i]].unwrap_or(0) as u8,
-            })
-            .collect();
+        let conditions = offsets.conditions + uniform_solved;
         let integrals = self.base_integrals(mistakes);
         Some(BaseProblem {
-            rows: base_rows,
+            rows,
             solved,
+            offsets,
             integrals,
             conditions,
         })

@@ -10,17 +10,23 @@ use crate::graph::{Graph, Id, Jet, Rational, Variable};
 use num_traits::One;
 use std::collections::BTreeMap;
 
-/// A polynomial in ∂x and |∂x| with base-state coefficients.
+/// A polynomial in ∂x and |∂x| with base-state coefficients; |∂x|² is −∂x², so |∂x| stands at most once.
 pub type Symbol = BTreeMap<(u8, u8), Id>;
 
 /// A linear combination of jets at one end; jets carry no x-derivatives, the symbols do.
 pub type Combination = BTreeMap<Jet, Symbol>;
 
+/// into += other · factor
 fn symbol_add(graph: &mut Graph, into: &mut Symbol, other: &Symbol, factor: &Symbol) {
     for (&(a, b), &left) in other {
         for (&(c, d), &right) in factor {
             let product = graph.mul(left, right);
-            let key = (a + c, b + d);
+            let product = if (b + d) / 2 % 2 == 1 {
+                graph.neg(product)
+            } else {
+                product
+            };
+            let key = (a + c + 2 * ((b + d) / 2), (b + d) % 2);
             let total = match into.get(&key) {
                 Some(&present) => graph.add(present, product),
                 None => product,

@@ -1,14 +1,12 @@
 //! One case: the boundary conditions under one combination of the structural switches, the adjoint
 //! conditions that follow from them, and what closes the problem at k = 0.
 
+use super::Deriver;
 use super::boundary::{Combination, Simplifier, as_condition, conjugate, demands, reduce};
 use super::closure::{self, CaseClosure};
-use super::form::Form;
-use super::linear::Term;
 use super::wall::{
     BaseCondition, BaseRules, CaseProblem, WallCondition, Walls, at_end, base_rules, walls,
 };
-use super::{Deriver, pairing};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::graph::{Graph, Id, Jet, Node, Plain};
 use crate::model::{Closure, Condition, End};
@@ -18,7 +16,7 @@ use crate::model::{Closure, Condition, End};
 pub struct AdjointCondition {
     pub end: End,
     pub combination: Combination,
-    /// The balance whose adjoint field's row it replaces.
+    /// The balance whose adjoint field it is solved for.
     pub balance: usize,
 }
 
@@ -55,7 +53,13 @@ pub(super) fn derive(
     for condition in &written {
         let mut form = deriver.expand(condition.residual, &condition.location, mistakes)?;
         form.terms.remove(&Vec::new());
-        let Some(field) = attributed(&form) else {
+        let (end, residual) = (condition.end, condition.residual);
+        let wall = WallCondition {
+            end,
+            form,
+            residual,
+        };
+        if wall.about().is_none() {
             let message = "the condition says nothing about a field to lowest order";
             let expected = "a condition that is linear in some field";
             mistakes.push(Diagnostic::new(
@@ -64,16 +68,10 @@ pub(super) fn derive(
                 expected,
             ));
             return None;
-        };
-        let (end, residual) = (condition.end, condition.residual);
-        conditions.push(WallCondition {
-            end,
-            form,
-            residual,
-            field,
-        });
+        }
+        conditions.push(wall);
     }
-    check_count(deriver, problem.linear, &conditions, &written, mistakes)?;
+    check_count(deriver, problem.needed, &conditions, &written, mistakes)?;
     let base_conditions = base_conditions(deriver, &problem, &written, &written_base, mistakes)?;
     let rules = base_rules(deriver.graph, &base_conditions);
     let walls = match walls(deriver, &problem, &conditions, &rules) {
@@ -100,17 +98,9 @@ pub(super) fn derive(
     })
 }
 
-/// The field of the highest y-derivative in the linear part.
-fn attributed(form: &Form) -> Option<usize> {
-    let linear = form.degree(1);
-    let jets = linear.terms.keys().map(|m| m[0]);
-    jets.max_by_key(|j| (j.y, std::cmp::Reverse((j.absx, j.x, j.field))))
-        .map(|j| usize::from(j.field))
-}
-
 fn check_count(
     deriver: &Deriver,
-    linear: &[Term],
+    needed: usize,
     conditions: &[WallCondition],
     written: &[&Condition],
     mistakes: &mut Vec<Diagnostic>,
@@ -125,22 +115,13 @@ fn check_count(
             range: 0..0,
         },
     };
-    let Some(needed) = pairing::total_order(linear, model.balances.len(), profiles) else {
-        let message = "the balances do not determine the fields";
-        let expected = "balances that can be solved for one field each";
-        mistakes.push(Diagnostic::new(
-            model.balances[0].location.clone(),
-            message,
-            expected,
-        ));
-        return None;
-    };
     if conditions.len() == needed {
         return Some(());
     }
     let counts: Vec<String> = (0..profiles)
         .map(|field| {
-            let count = conditions.iter().filter(|c| c.field == field).count();
+            let named = conditions.iter().filter_map(WallCondition::about);
+            let count = named.filter(|f| *f == field).count();
             format!("{} {count}", model.fields[field].name)
         })
         .collect();
@@ -311,11 +292,8 @@ fn describe_demand(
 ) -> String {
     let lettering = deriver.model.lettering();
     let printer = lettering.printer(deriver.graph, &Plain);
-    let place = deriver.model.interval.as_ref().map(|i| match end {
-        End::Lower => i.lower,
-        End::Upper => i.upper,
-    });
-    let place = place.map_or(String::new(), |p| printer.print(p));
+    let interval = deriver.model.interval.as_ref();
+    let place = interval.map_or("", |i| i.written(end));
     let mut asked: Vec<String> = combination
         .keys()
         .map(|y| {

@@ -91,7 +91,20 @@ impl Form {
         self.terms.keys().map(Vec::len).max().unwrap_or(0)
     }
 
+    /// Adds coefficient · Π monomial, the monomial being sorted.
     pub fn accumulate(&mut self, graph: &mut Graph, monomial: Monomial, coefficient: Id) {
+        if monomial.iter().any(|jet| jet.absx > 1) {
+            let written = monomial.into_iter().map(Jet::canonical);
+            let (mut monomial, signs): (Monomial, Vec<bool>) = written.unzip();
+            monomial.sort_unstable();
+            let odd = signs.into_iter().filter(|&s| s).count() % 2 == 1;
+            let coefficient = if odd {
+                graph.neg(coefficient)
+            } else {
+                coefficient
+            };
+            return self.accumulate(graph, monomial, coefficient);
+        }
         let total = match self.terms.get(&monomial) {
             Some(&present) => graph.add(present, coefficient),
             None => coefficient,

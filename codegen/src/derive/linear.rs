@@ -83,14 +83,3 @@ pub fn adjoint_operator(graph: &mut Graph, terms: &[Term]) -> Vec<Term> {
     }
     adjoint
 }
-
-/// The highest y-derivative of each of the first `fields` fields in each row; `None` where the
-/// field is absent.
-pub fn orders(terms: &[Term], rows: usize, fields: usize) -> Vec<Vec<Option<u8>>> {
-    let mut table = vec![vec![None; fields]; rows];
-    for term in terms.iter().filter(|t| usize::from(t.jet.field) < fields) {
-        let entry: &mut Option<u8> = &mut table[term.row][usize::from(term.jet.field)];
-        *entry = Some(entry.unwrap_or(0).max(term.jet.y));
-    }
-    table
-}

@@ -10,6 +10,7 @@ mod closure;
 mod expand;
 mod form;
 mod linear;
+mod offsets;
 mod open;
 mod pairing;
 mod parity;
@@ -22,6 +23,7 @@ pub use closure::CaseClosure;
 pub use expand::base_value;
 pub use form::{Form, Monomial};
 pub use linear::Term;
+pub use offsets::Offsets;
 pub use open::{Opener, carry_out, dependence};
 pub use parity::Parity;
 pub use wall::{BaseCondition, WallCondition};
@@ -56,11 +58,17 @@ pub struct Operators {
     pub adjoint: Vec<Term>,
     /// N2, N3, … : `nonlinear[d − 2][row]`, divided, on the right-hand side.
     pub nonlinear: Vec<Vec<Form>>,
-    /// The field that each balance is collocated with.
+    /// Values and points of L's fields and balances.
+    pub offsets: Offsets,
+    /// Values and points of L†, whose columns are balances and whose rows are fields.
+    pub adjoint_offsets: Offsets,
+    /// The field that each balance determines.
     pub pairing: Vec<usize>,
     pub parity: Option<Parity>,
-    /// Balances that determine the base state, with the field each is collocated with.
+    /// Balances that determine the base state, or have to hold for it.
     pub base: Vec<BaseRow>,
+    /// Points of `base` and values of `solved`.
+    pub base_offsets: Offsets,
     /// Fields that the base state is solved for, numbers last.
     pub solved: Vec<usize>,
     /// Integral conditions of the base state: integrand and value.
@@ -157,11 +165,13 @@ impl<'a> Deriver<'a> {
             return None;
         };
         self.check_determined(&linear, profiles, mistakes);
+        let (offsets, adjoint_offsets) = self.offsets(&linear, &adjoint, profiles, mistakes)?;
         // base state
         let problem = self.base_problem(&balances, mistakes)?;
         let BaseProblem {
             rows: base,
             solved,
+            offsets: base_offsets,
             integrals: base_integrals,
             conditions,
         } = problem;
@@ -173,6 +183,7 @@ impl<'a> Deriver<'a> {
                 linear: &linear,
                 adjoint: &adjoint,
                 divisors: &divisors,
+                needed: offsets.conditions,
                 pairing: &pairing,
                 solved: &solved,
                 switches: &switches,
@@ -186,14 +197,10 @@ impl<'a> Deriver<'a> {
             .flat_map(|c| c.conditions.iter().map(|w| &w.form))
             .collect();
         let parity = parity::parity(&balances, &walls, self.uniform.len());
-        let place = Location {
-            file: 0,
-            range: 0..0,
-        };
         let outputs: Vec<Form> = model
             .outputs
             .iter()
-            .filter_map(|o| self.expand(o.body, &place, mistakes))
+            .filter_map(|o| self.expand(o.body, &o.location, mistakes))
             .collect();
         Some(Operators {
             order: self.order,
@@ -202,15 +209,38 @@ impl<'a> Deriver<'a> {
             linear,
             adjoint,
             nonlinear,
+            offsets,
+            adjoint_offsets,
             pairing,
             parity,
             base,
+            base_offsets,
             solved,
             base_integrals,
             switches,
             cases,
             outputs,
         })
+    }
+
+    /// How L and L† are collocated.
+    fn offsets(
+        &self,
+        linear: &[Term],
+        adjoint: &[Term],
+        profiles: usize,
+        mistakes: &mut Vec<Diagnostic>,
+    ) -> Option<(Offsets, Offsets)> {
+        let rows = self.model.balances.len();
+        let of = |terms, rows, columns| offsets::offsets(&offsets::orders(terms, rows, columns));
+        let found = of(linear, rows, profiles).zip(of(adjoint, profiles, rows));
+        if found.is_none() {
+            let message = "the balances do not determine the fields";
+            let expected = "balances that can be solved for one field each";
+            let place = self.model.balances[0].location.clone();
+            mistakes.push(Diagnostic::new(place, message, expected));
+        }
+        found
     }
 
     /// The expansion of an expression, or a mistake at `place`.

@@ -1,56 +1,9 @@
-//! Which balance determines which field, and how many boundary conditions that asks for.
+//! The field that each balance determines: what an adjoint field is called after.
 
-use super::linear::{Term, orders};
+use super::linear::Term;
+use super::offsets::{assign, orders};
 
-/// The assignment of rows to columns with the largest total weight; `None` entries are forbidden.
-///
-/// Ties go to the assignment met first (row by row, lowest column first), so the result is the same
-/// on every run. Returns `None` where no complete assignment exists.
-pub fn assign(weights: &[Vec<Option<i64>>]) -> Option<(i64, Vec<usize>)> {
-    // Successive best augmentation over subsets of columns: exact, and models are small.
-    let n = weights.len();
-    let columns = weights.first().map_or(0, Vec::len);
-    if columns > 14 {
-        return None;
-    }
-    let mut best: Vec<Option<(i64, Vec<usize>)>> = vec![None; 1 << columns];
-    best[0] = Some((0, Vec::new()));
-    for row in weights.iter().take(n) {
-        let mut next: Vec<Option<(i64, Vec<usize>)>> = vec![None; 1 << columns];
-        for (used, state) in best.iter().enumerate() {
-            let Some((total, chosen)) = state else {
-                continue;
-            };
-            for (column, weight) in row.iter().enumerate() {
-                let Some(weight) = weight else { continue };
-                if used >> column & 1 == 1 {
-                    continue;
-                }
-                let target = &mut next[used | 1 << column];
-                let total = total + weight;
-                if target.as_ref().is_none_or(|(present, _)| total > *present) {
-                    let mut chosen = chosen.clone();
-                    chosen.push(column);
-                    *target = Some((total, chosen));
-                }
-            }
-        }
-        best = next;
-    }
-    best.into_iter().flatten().max_by_key(|(total, _)| *total)
-}
-
-/// The number of boundary conditions that a system of mixed order needs: the largest total
-/// y-order over all assignments of rows to fields (Volevich's rule).
-pub fn total_order(terms: &[Term], rows: usize, fields: usize) -> Option<usize> {
-    let weights: Vec<Vec<Option<i64>>> = orders(terms, rows, fields)
-        .iter()
-        .map(|row| row.iter().map(|order| order.map(i64::from)).collect())
-        .collect();
-    assign(&weights).map(|(total, _)| total as usize)
-}
-
-/// The field that each balance is collocated with: the one whose ∂t it holds; what is left
+/// The field that each balance determines: the one whose ∂t it holds; what is left
 /// (continuity and pressure, definitions and auxiliary fields) by the derivatives held.
 pub fn pair(
     terms: &[Term],

@@ -17,8 +17,16 @@ pub struct WallCondition {
     pub form: Form,
     /// The condition in the full state, unexpanded.
     pub residual: Id,
-    /// The field whose collocation row it replaces.
-    pub field: usize,
+}
+
+impl WallCondition {
+    /// The field of the highest y-derivative in the linear part.
+    pub fn about(&self) -> Option<usize> {
+        let linear = self.form.degree(1);
+        let jets = linear.terms.keys().map(|m| m[0]);
+        jets.max_by_key(|j| (j.y, std::cmp::Reverse((j.absx, j.x, j.field))))
+            .map(|j| usize::from(j.field))
+    }
 }
 
 /// A condition on the base state.
@@ -34,6 +42,8 @@ pub(super) struct CaseProblem<'a> {
     pub linear: &'a [Term],
     pub adjoint: &'a [Term],
     pub divisors: &'a [Id],
+    /// How many boundary conditions the balances ask for.
+    pub needed: usize,
     pub pairing: &'a [usize],
     pub solved: &'a [usize],
     pub switches: &'a [usize],

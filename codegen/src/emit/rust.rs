@@ -41,8 +41,7 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
         functions.extend(residual_function(&name, kernel));
         residuals.extend(quote!(s::ResidualId::#pattern => match call {
             s::ResidualCall::Real(x, out) => #name(point, x, out),
-            s::ResidualCall::Complex(x, out) => #name(point, x, out),
-            s::ResidualCall::Dual(x, out) => #name(point, x, out),
+            s::ResidualCall::Rounding(x, out) => #name(point, x, out),
             s::ResidualCall::Series(x, out) => #name(point, x, out),
         },));
     }

@@ -146,13 +146,13 @@ impl<'a> Writer<'a> {
     fn place(&self, end: End) -> String {
         let model = &self.derivation.model;
         model.interval.as_ref().map_or(String::new(), |interval| {
-            let id = if end == End::Lower {
-                interval.lower
-            } else {
-                interval.upper
-            };
             let name = self.notation.letter(&interval.name);
-            format!("{name} = {}", self.print(id))
+            let place = match (interval.named(end), self.notation.is_flat()) {
+                (true, true) => interval.written(end).to_owned(),
+                (true, false) => self.notation.letter(interval.written(end)),
+                (false, _) => self.print(interval.end(end)),
+            };
+            format!("{name} = {place}")
         })
     }
 

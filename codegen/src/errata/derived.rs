@@ -81,7 +81,7 @@ pub(super) fn subject(
         Subject::Condition(end, name) => {
             let (case, field) = (case(derivation, formula, setting)?, field(name)?);
             let mut all = case.conditions.iter();
-            let found = all.find(|c| c.end == *end && c.field == field);
+            let found = all.find(|c| c.end == *end && c.about() == Some(field));
             let found =
                 found.ok_or_else(|| absent(formula, "condition at this end on", name, &[]))?;
             found.form.terms.clone()

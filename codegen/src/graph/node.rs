@@ -30,6 +30,17 @@ impl Jet {
         self.t == 0 && self.x == 0 && self.absx == 0
     }
 
+    /// The jet with |∂x|² written as −∂x², and whether the sign changes.
+    pub fn canonical(self) -> (Self, bool) {
+        let pairs = self.absx / 2;
+        let jet = Jet {
+            x: self.x + 2 * pairs,
+            absx: self.absx % 2,
+            ..self
+        };
+        (jet, pairs % 2 == 1)
+    }
+
     /// The jet with one more derivative.
     pub fn derived(self, operator: Operator) -> Self {
         let mut jet = self;

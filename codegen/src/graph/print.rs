@@ -9,6 +9,7 @@ pub struct Printer<'a> {
     pub fields: &'a [String],
     pub parameters: &'a [String],
     pub laws: &'a [String],
+    pub periodic: &'a str,
     pub coordinate: &'a str,
     pub notation: &'a dyn Notation,
 }
@@ -82,12 +83,12 @@ impl Printer<'_> {
             }
             Node::Derivative(operator, argument) => {
                 let name = match operator {
-                    super::Operator::Dx => "∂x",
-                    super::Operator::Dy => "∂y",
-                    super::Operator::Dt => "∂t",
-                    super::Operator::AbsDx => "|∂x|",
+                    super::Operator::Dx => format!("∂{}", self.periodic),
+                    super::Operator::Dy => format!("∂{}", self.coordinate),
+                    super::Operator::Dt => "∂t".to_owned(),
+                    super::Operator::AbsDx => format!("|∂{}|", self.periodic),
                 };
-                (notation.call(name, &self.print(*argument)), Binding::Power)
+                (notation.call(&name, &self.print(*argument)), Binding::Power)
             }
             Node::Symbol(name, below) => {
                 let marks: Vec<String> = below.chars().map(String::from).collect();
@@ -101,13 +102,16 @@ impl Printer<'_> {
     /// A derivative of a field: `∂xy u'`, with `mark` after the name.
     pub fn jet(&self, jet: Jet, mark: &str) -> String {
         let mut below = vec!["t"; usize::from(jet.t)];
-        below.extend(vec!["x"; usize::from(jet.x)]);
+        below.extend(vec![self.periodic; usize::from(jet.x)]);
         below.extend(vec![self.coordinate; usize::from(jet.y)]);
         let name = &self.fields[usize::from(jet.field)];
         let symbol = self.notation.symbol(name, mark, &below);
         match jet.absx {
             0 => symbol,
-            n => format!("{}{symbol}", self.notation.absolute_partial("x", n)),
+            n => format!(
+                "{}{symbol}",
+                self.notation.absolute_partial(self.periodic, n)
+            ),
         }
     }
 

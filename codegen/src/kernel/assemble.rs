@@ -3,10 +3,9 @@
 use super::Kernel;
 use super::polarise::form_tables;
 use crate::derive::{CaseClosure, Derivation, Opener, base_value};
-use crate::graph::{Graph, Id, Jet, Node, Plain, Variable};
+use crate::graph::{Graph, Id, Jet, Node, Variable};
 use crate::model::Amplitude;
 use crate::structure::*;
-use num_traits::One;
 use std::collections::BTreeSet;
 
 /// The kernels of a model with their structure.
@@ -36,6 +35,13 @@ pub fn kernels(derivation: &mut Derivation) -> ModelKernels {
     let result = assembler.lower(structure);
     derivation.model.graph = graph;
     result
+}
+
+fn offsets(offsets: &crate::derive::Offsets) -> OffsetsInfo {
+    OffsetsInfo {
+        rows: offsets.rows.clone(),
+        columns: offsets.columns.clone(),
+    }
 }
 
 pub(super) struct Assembler<'a> {
@@ -167,7 +173,8 @@ impl Assembler<'_> {
             balances: model.balances.iter().map(|b| b.name.clone()).collect(),
             base_order: self.base_order,
             base,
-            pairing: operators.pairing.clone(),
+            offsets: offsets(&operators.offsets),
+            adjoint_offsets: offsets(&operators.adjoint_offsets),
             parity: operators.parity.as_ref().map(|p| ParityInfo {
                 fields: p.fields.clone(),
                 rows: p.rows.clone(),
@@ -196,13 +203,8 @@ impl Assembler<'_> {
         let mut rows = Vec::new();
         for row in &operators.base {
             let jets = self.with_jacobian(row.residual, &mut outputs);
-            let (balance, field, order) = (row.balance, row.field, usize::from(row.order));
-            rows.push(BaseRowInfo {
-                balance,
-                field,
-                order,
-                jets,
-            });
+            let balance = row.balance;
+            rows.push(BaseRowInfo { balance, jets });
         }
         self.kernel(KernelId::Base, outputs);
         let mut outputs = Vec::new();
@@ -240,6 +242,7 @@ impl Assembler<'_> {
             solved: operators.solved.clone(),
             closed: model.base.closed.iter().map(Option::is_some).collect(),
             rows,
+            offsets: offsets(&operators.base_offsets),
             integrals,
             automatic,
         }
@@ -273,7 +276,6 @@ impl Assembler<'_> {
             let monomials = condition.form.terms.keys().cloned().collect();
             conditions.push(ConditionInfo {
                 end: condition.end,
-                field: condition.field,
                 monomials,
             });
         }
@@ -292,7 +294,6 @@ impl Assembler<'_> {
                 }
                 infos.push(AdjointConditionInfo {
                     end: condition.end,
-                    balance: condition.balance,
                     jets,
                 });
             }
@@ -347,10 +348,10 @@ impl Assembler<'_> {
 
     fn amplitude(&mut self) -> AmplitudeInfo {
         let (outputs, info) = match &self.model.amplitude {
-            Amplitude::Integral { weights, value } => {
-                let mut outputs: Vec<Id> = weights.iter().map(|(_, w)| *w).collect();
+            Amplitude::Integral { weights, value, .. } => {
+                let mut outputs: Vec<Id> = weights.iter().map(|w| w.weight).collect();
                 outputs.push(*value);
-                let weighted = weights.iter().map(|(field, _)| *field).collect();
+                let weighted = weights.iter().map(|w| w.field).collect();
                 (
                     outputs,
                     AmplitudeInfo {
@@ -364,6 +365,7 @@ impl Assembler<'_> {
                 field,
                 place,
                 value,
+                ..
             } => {
                 let place = place.unwrap_or_else(|| self.graph.zero());
                 (
@@ -385,41 +387,33 @@ impl Assembler<'_> {
     }
 
     fn describe_amplitude(&self) -> String {
-        let lettering = self.model.lettering();
-        let (fields, coordinate) = (&lettering.fields, self.model.coordinate());
-        let printer = lettering.printer(self.graph, &Plain);
+        let (fields, coordinate) = (self.model.field_names(), self.model.coordinate());
         match &self.model.amplitude {
-            Amplitude::Integral { weights, value } => {
-                let terms: Vec<String> = weights
-                    .iter()
-                    .map(|(field, weight)| {
-                        let square = format!("|{}|²", fields[*field]);
-                        if self.graph.as_number(*weight).is_some_and(One::is_one) {
-                            square
-                        } else {
-                            format!("{} {square}", printer.factor(*weight))
-                        }
-                    })
-                    .collect();
-                let sum = terms.join(" + ");
+            Amplitude::Integral {
+                weights, written, ..
+            } => {
+                let terms = weights.iter().map(|weight| {
+                    let square = format!("|{}|²", fields[weight.field]);
+                    match weight.written.as_str() {
+                        "" => square,
+                        factor => format!("{factor} {square}"),
+                    }
+                });
+                let sum = terms.collect::<Vec<_>>().join(" + ");
                 if self.model.interval.is_some() {
-                    format!("∫ ({sum}) d{coordinate} = {}", printer.print(*value))
+                    format!("∫ ({sum}) d{coordinate} = {written}")
                 } else {
-                    format!("{sum} = {}", printer.print(*value))
+                    format!("{sum} = {written}")
                 }
             }
             Amplitude::Point {
                 field,
                 place,
-                value,
+                written: [at, value],
+                ..
             } => match (place, &self.model.interval) {
-                (Some(place), Some(_)) => format!(
-                    "|{}({})| = {}",
-                    fields[*field],
-                    printer.print(*place),
-                    printer.print(*value)
-                ),
-                _ => format!("|{}| = {}", fields[*field], printer.print(*value)),
+                (Some(_), Some(_)) => format!("|{}({at})| = {value}", fields[*field]),
+                _ => format!("|{}| = {value}", fields[*field]),
             },
         }
     }

@@ -3,7 +3,7 @@
 use super::mistake::view;
 use super::scope::{Context, Names, Resolved, is_two};
 use super::statement::field_index;
-use super::{Amplitude, Field};
+use super::{Amplitude, Field, Weight};
 use crate::diagnostic::Diagnostic;
 use crate::graph::Id;
 use crate::syntax::tree::*;
@@ -19,22 +19,37 @@ pub(super) fn amplitude(
         None => {
             let one = names.graph.one();
             let profiles = (0..fields.len()).filter(|&f| !fields[f].uniform);
+            let weighted = profiles.map(|field| Weight {
+                field,
+                weight: one,
+                written: String::new(),
+            });
             Ok(Amplitude::Integral {
-                weights: profiles.map(|f| (f, one)).collect(),
+                weights: weighted.collect(),
                 value: one,
+                written: "1".into(),
             })
         }
         Some(AmplitudeItem::Integral { integrand, value }) => {
             let mut weights = Vec::new();
             quadratic(integrand, None, names, &mut weights)?;
+            let written = names.written(value);
             let value = names.resolve(value, Context::Amplitude)?;
-            Ok(Amplitude::Integral { weights, value })
+            Ok(Amplitude::Integral {
+                weights,
+                value,
+                written,
+            })
         }
         Some(AmplitudeItem::Point {
             place,
             field,
             value,
         }) => {
+            let written = [
+                place.as_ref().map_or(String::new(), |p| names.written(p)),
+                names.written(value),
+            ];
             let place = match place {
                 Some(place) => Some(names.resolve(place, Context::Constant)?),
                 None => None,
@@ -45,6 +60,7 @@ pub(super) fn amplitude(
                 field,
                 place,
                 value,
+                written,
             })
         }
     }
@@ -53,13 +69,13 @@ pub(super) fn amplitude(
 /// The terms weight · |field|² of a sum.
 fn quadratic(
     expression: &Expression,
-    weight: Option<Id>,
+    weight: Option<(Id, String)>,
     names: &mut Names,
-    found: &mut Vec<(usize, Id)>,
+    found: &mut Vec<Weight>,
 ) -> Resolved<()> {
     match &expression.kind {
         ExpressionKind::Binary(Binary::Add, left, right) => {
-            quadratic(left, weight, names, found)?;
+            quadratic(left, weight.clone(), names, found)?;
             quadratic(right, weight, names, found)
         }
         ExpressionKind::Binary(Binary::Multiply, left, right) => {
@@ -68,10 +84,13 @@ fn quadratic(
             } else {
                 (right, left)
             };
+            let text = names.written(factor);
             let factor = names.expression(factor, &view(Context::Profile))?;
             let weight = match weight {
-                Some(weight) => names.graph.mul(weight, factor),
-                None => factor,
+                Some((weight, before)) => {
+                    (names.graph.mul(weight, factor), format!("{before} {text}"))
+                }
+                None => (factor, text),
             };
             quadratic(square, Some(weight), names, found)
         }
@@ -79,7 +98,12 @@ fn quadratic(
         {
             let field = modulus_of(base, names)?;
             let one = names.graph.one();
-            found.push((field, weight.unwrap_or(one)));
+            let (weight, written) = weight.unwrap_or((one, String::new()));
+            found.push(Weight {
+                field,
+                weight,
+                written,
+            });
             Ok(())
         }
         _ => Err(Diagnostic::new(

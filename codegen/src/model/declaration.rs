@@ -1,6 +1,6 @@
 //! What the names of a spec are declared as: coordinates, parameters, fields, definitions.
 
-use super::mistake::{beginning, check_name, twice};
+use super::mistake::{beginning, twice};
 use super::scope::{Context, Names};
 use super::statement::keep;
 use super::*;
@@ -24,11 +24,20 @@ pub(super) fn coordinate_names(
             "there is no periodic coordinate",
             "`coordinates { x: periodic; }`",
         )),
-        [_, second, ..] => mistakes.push(Diagnostic::new(
-            second.name.location.clone(),
-            "there are two periodic coordinates",
-            "one periodic coordinate",
-        )),
+        [first, second, ..] => {
+            names.periodic = first.name.text.clone();
+            mistakes.push(
+                Diagnostic::new(
+                    second.name.location.clone(),
+                    "there are two periodic coordinates",
+                    "one periodic coordinate",
+                )
+                .hint(format!(
+                    "a wave along both is a wave along one: turn the axes so that `{}` is along it",
+                    first.name.text
+                )),
+            );
+        }
     }
     if let Some(first) = bounded.first() {
         names.coordinate = Some(first.name.text.clone());
@@ -50,6 +59,7 @@ pub(super) fn interval(
 ) -> Option<Interval> {
     let item = tree.coordinates.iter().find(|c| c.interval.is_some())?;
     let (lower, upper) = item.interval.as_ref()?;
+    let written = [names.written(lower), names.written(upper)];
     let lower = keep(names.resolve(lower, Context::Constant), mistakes)?;
     let upper = keep(names.resolve(upper, Context::Constant), mistakes)?;
     if lower == upper {
@@ -64,12 +74,13 @@ pub(super) fn interval(
         name: item.name.text.clone(),
         lower,
         upper,
+        written,
     })
 }
 
 pub(super) fn parameters(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
     for item in &tree.parameters {
-        keep(check_name(&item.name), mistakes);
+        keep(names.check_name(&item.name), mistakes);
         if names.parameters.iter().any(|p| p.name == item.name.text) {
             mistakes.push(twice(&item.name));
             continue;
@@ -96,7 +107,7 @@ pub(super) fn fields(
         .iter()
         .map(|f| (&f.name, false, f.range.as_ref(), f.doc.clone()));
     for (name, uniform, range, doc) in profiles.chain(unknowns) {
-        keep(check_name(name), mistakes);
+        keep(names.check_name(name), mistakes);
         let taken = names.parameters.iter().any(|p| p.name == name.text)
             || names.fields.contains_key(&name.text)
             || names.coordinate.as_deref() == Some(&name.text)
@@ -138,11 +149,9 @@ pub(super) fn fields(
 }
 
 pub(super) fn declare(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
-    keep(check_name(&definition.name), mistakes);
+    keep(names.check_name(&definition.name), mistakes);
     let text = &definition.name.text;
-    let taken = names.fields.contains_key(text)
-        || names.parameters.iter().any(|p| &p.name == text)
-        || names.operator(text).is_some();
+    let taken = names.fields.contains_key(text) || names.parameters.iter().any(|p| &p.name == text);
     let previous = names.scopes[0]
         .definitions
         .insert(text.clone(), definition.clone());

@@ -7,7 +7,7 @@ use crate::Sources;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::syntax::parse_laws;
 use crate::syntax::tree::*;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// A law of another file under the name the model gives it.
 pub(super) struct Imported {
@@ -23,7 +23,7 @@ pub(super) fn load_imports(
     importer: usize,
     sources: &Sources,
     names: &mut Names,
-    known: &mut HashMap<String, usize>,
+    known: &mut BTreeMap<String, usize>,
     mistakes: &mut Vec<Diagnostic>,
 ) -> Vec<Imported> {
     let mut found = Vec::new();
@@ -68,7 +68,7 @@ fn load_file(
     name: &Name,
     sources: &Sources,
     names: &mut Names,
-    known: &mut HashMap<String, usize>,
+    known: &mut BTreeMap<String, usize>,
     mistakes: &mut Vec<Diagnostic>,
 ) -> Option<usize> {
     if let Some(&scope) = known.get(&name.text) {

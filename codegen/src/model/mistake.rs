@@ -3,30 +3,16 @@
 use super::scope::{Context, Names, Resolved, View};
 use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::graph::Function;
-use crate::syntax::tree::Name;
+use crate::syntax::tree::{Expression, Name};
 
-/// Words that name something in the language or on the command line.
-const RESERVED: [&str; 12] = [
-    "t", "k", "pi", "dt", "sqrt", "exp", "log", "sin", "cos", "select", "integral", "at",
-];
+/// Words that name something in the language or on the command line, beside the elementary functions and
+/// the differential operators.
+const RESERVED: [&str; 8] = ["t", "k", "pi", "sqrt", "select", "integral", "at", "auto"];
 
 /// A name that stands for two things.
 pub(super) fn twice(name: &Name) -> Diagnostic {
     let message = format!("`{}` is defined twice", name.text);
     Diagnostic::new(name.location.clone(), message, "a name not used yet")
-}
-
-/// A name that the language keeps for itself.
-pub(super) fn check_name(name: &Name) -> Resolved<()> {
-    if RESERVED.contains(&name.text.as_str()) {
-        let message = format!("`{}` is a word of the language", name.text);
-        return Err(Diagnostic::new(
-            name.location.clone(),
-            message,
-            "another name",
-        ));
-    }
-    Ok(())
 }
 
 /// The view of the model file.
@@ -47,6 +33,31 @@ pub(super) fn beginning() -> Location {
 }
 
 impl Names {
+    /// A name that the language keeps for itself is none for a user to give.
+    pub(super) fn check_name(&self, name: &Name) -> Resolved<()> {
+        let word = name.text.as_str();
+        let what = match word {
+            "k" => "the wavenumber".to_owned(),
+            "t" => "time".to_owned(),
+            _ if self.operator(word).is_some() => "a differential operator".to_owned(),
+            _ if Function::ALL.iter().any(|f| f.name() == word) => "a function".to_owned(),
+            _ if RESERVED.contains(&word) => "a word of the language".to_owned(),
+            _ => return Ok(()),
+        };
+        Err(Diagnostic::new(
+            name.location.clone(),
+            format!("`{word}` is reserved: it is {what}"),
+            "another name",
+        ))
+    }
+
+    /// An expression as the user wrote it.
+    pub(super) fn written(&self, expression: &Expression) -> String {
+        let place = &expression.location;
+        let text = &self.files[place.file].text;
+        text.get(place.range.clone()).unwrap_or_default().to_owned()
+    }
+
     /// A name that stands for nothing, with the nearest one that does.
     pub(super) fn unknown(&self, name: &str, place: &Location, view: &View) -> Diagnostic {
         let scope = &self.scopes[view.scope];
@@ -78,6 +89,17 @@ impl Names {
                 self.periodic
             ));
         }
+        let habit = match name {
+            "inf" | "infinity" => Some("leave the end of a range open, as in `0..`"),
+            "abs" => Some("a modulus is not smooth: sqrt(q^2) is one where q keeps its sign"),
+            "t" => Some("a model does not depend on time; a time derivative is dt(q)"),
+            "i" => Some("balances are real: give the real and the imaginary part a field each"),
+            "max" | "min" | "sign" => Some("a law has to be smooth: tanh makes a step"),
+            "e" => Some("the exponential function is exp(q)"),
+            "ln" => Some("the natural logarithm is log(q)"),
+            _ => None,
+        };
+        hint = habit.map(str::to_owned).or(hint);
         let expected = "a field, a parameter, a law or a definition";
         Diagnostic::new(place.clone(), format!("`{name}` is not known"), expected).maybe_hint(hint)
     }

@@ -35,7 +35,6 @@ pub struct Model {
     /// Name of the periodic coordinate.
     pub periodic: String,
     pub interval: Option<Interval>,
-    /// The user's parameters, then the wavenumber k (which only the amplitude may use).
     pub parameters: Vec<Parameter>,
     pub fields: Vec<Field>,
     pub laws: Vec<Law>,
@@ -62,6 +61,7 @@ impl Model {
             fields: self.field_names(),
             parameters: self.parameters.iter().map(|p| p.name.clone()).collect(),
             laws: self.laws.iter().map(|l| l.name.clone()).collect(),
+            periodic: self.periodic.clone(),
             coordinate: self.coordinate().to_owned(),
         }
     }
@@ -72,11 +72,12 @@ impl Model {
     }
 }
 
-/// Names of fields, parameters, laws and the coordinate.
+/// Names of fields, parameters, laws and the coordinates.
 pub struct Lettering {
     pub fields: Vec<String>,
     parameters: Vec<String>,
     laws: Vec<String>,
+    periodic: String,
     coordinate: String,
 }
 
@@ -88,6 +89,7 @@ impl Lettering {
             fields: &self.fields,
             parameters: &self.parameters,
             laws: &self.laws,
+            periodic: &self.periodic,
             coordinate: &self.coordinate,
             notation,
         }
@@ -99,6 +101,30 @@ pub struct Interval {
     pub name: String,
     pub lower: Id,
     pub upper: Id,
+    /// The ends as the user wrote them.
+    pub written: [String; 2],
+}
+
+impl Interval {
+    /// The coordinate of an end.
+    pub fn end(&self, end: End) -> Id {
+        match end {
+            End::Lower => self.lower,
+            End::Upper => self.upper,
+        }
+    }
+
+    /// An end as the user wrote it.
+    pub fn written(&self, end: End) -> &str {
+        &self.written[usize::from(end == End::Upper)]
+    }
+
+    /// Whether the user gave an end a name, rather than a formula.
+    pub fn named(&self, end: End) -> bool {
+        let mut letters = self.written(end).chars();
+        letters.next().is_some_and(char::is_alphabetic)
+            && letters.all(|c| c.is_alphanumeric() || c == '_')
+    }
 }
 
 #[derive(Clone)]
@@ -182,15 +208,25 @@ pub enum Closure {
 pub enum Amplitude {
     /// ∫ Σ weight |field|² = value
     Integral {
-        weights: Vec<(usize, Id)>,
+        weights: Vec<Weight>,
         value: Id,
+        written: String,
     },
     /// |field| = |value| at a place
     Point {
         field: usize,
         place: Option<Id>,
         value: Id,
+        /// Place and value as the user wrote them.
+        written: [String; 2],
     },
+}
+
+/// weight |field|², the weight also as the user wrote it; nothing for 1.
+pub struct Weight {
+    pub field: usize,
+    pub weight: Id,
+    pub written: String,
 }
 
 pub struct Output {
@@ -199,4 +235,5 @@ pub struct Output {
     /// `None` for an integral over the interval.
     pub place: Option<Id>,
     pub body: Id,
+    pub location: Location,
 }

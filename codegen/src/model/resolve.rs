@@ -6,7 +6,7 @@ use super::{Model, statement};
 use crate::Sources;
 use crate::diagnostic::Diagnostics;
 use crate::syntax::parse_model;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// Resolves a spec, or reports every mistake that its form shows.
 pub fn resolve(sources: &Sources) -> Result<Model, Diagnostics> {
@@ -14,7 +14,7 @@ pub fn resolve(sources: &Sources) -> Result<Model, Diagnostics> {
     names.files.push(sources.spec.clone());
     let (tree, mut mistakes) = parse_model(0, &sources.spec.text);
     names.scopes.push(Scope::default());
-    let mut law_files = HashMap::new();
+    let mut law_files = BTreeMap::new();
     let imported = load_imports(
         &tree.imports,
         0,

@@ -6,7 +6,7 @@ use crate::diagnostic::{Diagnostic, Location, SourceFile};
 use crate::graph::{Function, Graph, Id, Jet, LawAtom, Node, Operator, Rational};
 use crate::syntax::tree::*;
 use num_traits::{One, ToPrimitive};
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 /// More expansions than any model needs: definitions that double at every step end here.
 const MOST_EXPANSIONS: usize = 5_000;
@@ -20,10 +20,10 @@ pub(super) type Resolved<T> = Result<T, Diagnostic>;
 /// The names of one file.
 #[derive(Default)]
 pub(super) struct Scope {
-    pub definitions: HashMap<String, Definition>,
+    pub definitions: BTreeMap<String, Definition>,
     /// Alias → (scope of the law file, name there).
-    pub imports: HashMap<String, (usize, String)>,
-    pub parameters: HashMap<String, ParameterItem>,
+    pub imports: BTreeMap<String, (usize, String)>,
+    pub parameters: BTreeMap<String, ParameterItem>,
 }
 
 /// What names an expression may use.
@@ -47,10 +47,10 @@ pub(super) struct Names {
     pub files: Vec<SourceFile>,
     pub scopes: Vec<Scope>,
     pub parameters: Vec<Parameter>,
-    pub fields: HashMap<String, usize>,
+    pub fields: BTreeMap<String, usize>,
     pub field_count: usize,
     /// Opaque laws of the model by name.
-    pub laws: HashMap<String, usize>,
+    pub laws: BTreeMap<String, usize>,
     pub used: Vec<bool>,
     /// Mistakes beside the first of an expression.
     pub further: Vec<Diagnostic>,
@@ -61,7 +61,7 @@ pub(super) struct Names {
     /// Work of the graph that is not the resolver's.
     pub work_before: usize,
     depth: usize,
-    memo: HashMap<(usize, String), Id>,
+    memo: BTreeMap<(usize, String), Id>,
 }
 
 /// One place from which names are looked up.
@@ -79,9 +79,9 @@ impl Names {
             files: Vec::new(),
             scopes: Vec::new(),
             parameters: Vec::new(),
-            fields: HashMap::new(),
+            fields: BTreeMap::new(),
             field_count: 0,
-            laws: HashMap::new(),
+            laws: BTreeMap::new(),
             used: Vec::new(),
             further: Vec::new(),
             periodic: "x".into(),
@@ -90,8 +90,13 @@ impl Names {
             expansions: 0,
             work_before: 0,
             depth: 0,
-            memo: HashMap::new(),
+            memo: BTreeMap::new(),
         }
+    }
+
+    /// Forgets what definitions stood for: the graph has been put back.
+    pub fn forget(&mut self) {
+        self.memo.clear();
     }
 
     /// The node of an expression of the model file.

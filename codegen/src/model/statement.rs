@@ -1,7 +1,7 @@
 //! Each block of the spec, checked and made part of the model.
 
 use super::import::{Imported, bind_imports};
-use super::mistake::{beginning, check_name, twice};
+use super::mistake::{beginning, twice};
 use super::scope::{Context, Names, Resolved};
 use super::*;
 use crate::diagnostic::{Diagnostic, nearest};
@@ -65,14 +65,7 @@ pub(super) fn model(
         .iter()
         .filter_map(|o| keep(output(o, names), mistakes))
         .collect();
-    for item in &names.scopes[0]
-        .definitions
-        .values()
-        .cloned()
-        .collect::<Vec<_>>()
-    {
-        check_definition(item, names, mistakes);
-    }
+    check_definitions(names, mistakes);
     mistakes.append(&mut names.further);
     // What a broken statement would have used is not known.
     let whole = mistakes.is_empty();
@@ -113,7 +106,7 @@ fn law(
     names: &mut Names,
     mistakes: &mut Vec<Diagnostic>,
 ) -> Option<Law> {
-    keep(check_name(&definition.name), mistakes);
+    keep(names.check_name(&definition.name), mistakes);
     let text = definition.name.text.clone();
     if names.laws.contains_key(&text) || names.fields.contains_key(&text) {
         mistakes.push(twice(&definition.name));
@@ -138,19 +131,23 @@ fn law(
     })
 }
 
-/// Definitions that no balance uses are read too, so that their mistakes show.
-fn check_definition(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
-    let count = definition.arguments.as_deref().unwrap_or_default().len();
-    let mut values = Vec::with_capacity(count);
-    for _ in 0..count {
-        values.push(names.graph.jet(Jet::value(0)));
+/// Definitions that no balance uses are read too, so that their mistakes show; on a graph of their own,
+/// so that they leave no trace in the model.
+fn check_definitions(names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
+    let definitions: Vec<Definition> = names.scopes[0].definitions.values().cloned().collect();
+    let kept = names.graph.clone();
+    for definition in &definitions {
+        let count = definition.arguments.as_deref().unwrap_or_default().len();
+        let stand_in = names.graph.jet(Jet::value(0));
+        let place = definition.name.location.clone();
+        let values = vec![stand_in; count];
+        keep(
+            names.expand(0, definition, &values, &place, Context::State),
+            mistakes,
+        );
     }
-    let place = definition.name.location.clone();
-    // Nonlinear operators may reject the stand-in argument; names and arities are what counts here.
-    keep(
-        names.expand(0, definition, &values, &place, Context::State),
-        mistakes,
-    );
+    names.graph = kept;
+    names.forget();
 }
 
 fn difference(equation: &Equation, names: &mut Names) -> Resolved<Id> {
@@ -407,5 +404,6 @@ fn output(item: &OutputItem, names: &mut Names) -> Resolved<Output> {
         doc: item.doc.clone(),
         place,
         body,
+        location: item.name.location.clone(),
     })
 }

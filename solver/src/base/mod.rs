@@ -101,6 +101,22 @@ fn fixed(
     Ok(state)
 }
 
+impl BaseState {
+    /// The same state at the next degree, which truncates and rounds differently; nothing for a closed form,
+    /// or where the degree cannot rise.
+    pub fn refined(&self, model: &dyn Model) -> Option<BaseState> {
+        let next = DEGREES.iter().position(|&degree| degree > self.degree)?;
+        let solved = !self.series.is_empty() && model.structure().coordinate.is_some();
+        let newton = Newton {
+            model,
+            parameters: &self.parameters,
+            resolved: FULL.tail,
+        };
+        let degree = solved.then(|| DEGREES[next])?;
+        newton.solve(Some(self), degree, self.stretch).ok()
+    }
+}
+
 fn check_interval(model: &dyn Model, parameters: &Parameters) -> Result<()> {
     let (lower, upper) = state::interval(model, parameters);
     if lower.is_finite() && upper.is_finite() && upper > lower {

@@ -1,8 +1,8 @@
 //! Damped Newton iteration for the base state, collocated on Chebyshev points.
 //!
-//! A field whose balance has order q in it is a polynomial of degree N, its balance collocated at
-//! N+1−q Gauss points; wall and integral conditions make up the difference. Where a layer inside
-//! asks for it, the polynomials are in a stretched coordinate η.
+//! Fields and balances have values and Gauss points by the offsets of the base problem, the widest field
+//! being a polynomial of degree N; wall and integral conditions make up the difference. Where a layer
+//! inside asks for it, the polynomials are in a stretched coordinate η.
 
 use super::state::{BaseState, interval};
 use crate::collocation::{Grid, GridKind, Stretch, clenshaw_curtis, coefficients};
@@ -59,14 +59,23 @@ struct Discrete<'a> {
     lower: f64,
     upper: f64,
     case: usize,
-    /// First unknown of each solved field.
-    offsets: Vec<usize>,
+    /// The unknowns of each solved field.
+    columns: Vec<Column>,
     size: usize,
-    /// Values at the unknowns' grid → derivatives at the points of each row, at the ends, and at
-    /// the grid itself.
+    /// The points of each row.
+    rows: Vec<Grid>,
+}
+
+/// The unknowns of a solved field, and what takes them to derivatives elsewhere.
+struct Column {
+    /// The first of them.
+    first: usize,
+    /// Extrema; one point for a number.
+    grid: Grid,
+    /// At the points of each row, at the ends, and at the extrema of degree N.
     rows: Vec<Matrices>,
     ends: [Matrices; 2],
-    own: Matrices,
+    all: Matrices,
 }
 
 /// d^order/dξ^order for orders 0 to 2.
@@ -149,7 +158,8 @@ impl Newton<'_> {
         best.ok_or(last)
     }
 
-    fn solve(
+    /// The state at one degree.
+    pub fn solve(
         &self,
         start: Option<&BaseState>,
         degree: usize,
@@ -157,25 +167,34 @@ impl Newton<'_> {
     ) -> Result<BaseState, Failure> {
         let structure = self.model.structure();
         let (lower, upper) = interval(self.model, self.parameters);
-        let mut offsets = Vec::new();
-        let mut size = 0;
-        for &field in &structure.base.solved {
-            offsets.push(size);
-            size += if structure.fields[field].uniform {
-                1
-            } else {
-                degree + 1
-            };
-        }
-        let case = self.parameters.case(structure);
-        let grid = Grid::new(GridKind::Lobatto(degree + 1));
-        let to = |kind: GridKind| stretched(&grid, &Grid::new(kind), stretch);
-        let orders = structure.base.rows.iter().map(|row| row.order);
-        let rows = orders
-            .map(|order| to(GridKind::Gauss(degree + 1 - order)))
+        let offsets = &structure.base.offsets;
+        let widest = offsets.columns.iter().copied().max().unwrap_or(0);
+        let rows: Vec<Grid> = offsets
+            .rows
+            .iter()
+            .map(|c| Grid::new(GridKind::Gauss(degree + 1 - widest + c)))
             .collect();
-        let ends = [to(GridKind::Lower), to(GridKind::Upper)];
-        let own = to(grid.kind);
+        let case = self.parameters.case(structure);
+        let all = Grid::new(GridKind::Lobatto(degree + 1));
+        let ends = [GridKind::Lower, GridKind::Upper].map(Grid::new);
+        let mut columns: Vec<Column> = Vec::new();
+        let mut size = 0;
+        for (index, &field) in structure.base.solved.iter().enumerate() {
+            let count = match offsets.columns.get(index) {
+                Some(t) if !structure.fields[field].uniform => degree + 1 - widest + t,
+                _ => 1,
+            };
+            let grid = Grid::new(GridKind::Lobatto(count));
+            let to = |points: &Grid| stretched(&grid, points, stretch);
+            columns.push(Column {
+                first: size,
+                rows: rows.iter().map(to).collect(),
+                ends: [to(&ends[0]), to(&ends[1])],
+                all: to(&all),
+                grid,
+            });
+            size += count;
+        }
         let discrete = Discrete {
             newton: self,
             degree,
@@ -183,11 +202,9 @@ impl Newton<'_> {
             lower,
             upper,
             case,
-            offsets,
+            columns,
             size,
             rows,
-            ends,
-            own,
         };
         discrete.iterate(discrete.initial(start))
     }
@@ -198,57 +215,29 @@ impl Discrete<'_> {
         self.newton.model
     }
 
-    fn grid(&self) -> Grid {
-        Grid::new(GridKind::Lobatto(self.degree + 1))
-    }
-
     fn initial(&self, start: Option<&BaseState>) -> Vec<f64> {
         let structure = self.model().structure();
         let template = self.state(&vec![0.0; self.size], 0.0);
-        let grid = self.grid();
-        let mut values = vec![0.0; self.size];
-        for (i, &eta) in grid.nodes.iter().enumerate() {
-            let xi = self.stretch.xi(eta);
-            let point = match start {
-                Some(state) => state.point(self.model(), xi, 0.0),
-                None => template.point(self.model(), xi, 0.0),
-            };
-            let guess = match start {
-                Some(_) => None,
-                None => Some(evaluate(self.model(), KernelId::Guess, &point)),
-            };
-            for (s, &field) in structure.base.solved.iter().enumerate() {
-                let value = match &guess {
-                    Some(guess) => guess[s],
-                    None => point[structure.base_position(field, 0)],
-                };
-                let position = self.offsets[s]
-                    + if structure.fields[field].uniform {
-                        0
-                    } else {
-                        i
-                    };
-                values[position] = value;
+        let mut values = Vec::with_capacity(self.size);
+        for (s, (column, &field)) in self.columns.iter().zip(&structure.base.solved).enumerate() {
+            for &eta in &column.grid.nodes {
+                let xi = self.stretch.xi(eta);
+                values.push(match start {
+                    Some(state) => {
+                        state.point(self.model(), xi, 0.0)[structure.base_position(field, 0)]
+                    }
+                    None => {
+                        let point = template.point(self.model(), xi, 0.0);
+                        evaluate(self.model(), KernelId::Guess, &point)[s]
+                    }
+                });
             }
         }
         values
     }
 
     fn state(&self, values: &[f64], residual: f64) -> BaseState {
-        let structure = self.model().structure();
-        let series = structure
-            .base
-            .solved
-            .iter()
-            .zip(&self.offsets)
-            .map(|(&field, &offset)| {
-                if structure.fields[field].uniform {
-                    vec![values[offset]]
-                } else {
-                    coefficients(&values[offset..=offset + self.degree])
-                }
-            })
-            .collect();
+        let own = |column: &Column| &values[column.first..][..column.grid.len()];
         BaseState {
             parameters: self.newton.parameters.clone(),
             case: self.case,
@@ -256,7 +245,7 @@ impl Discrete<'_> {
             upper: self.upper,
             degree: self.degree,
             stretch: self.stretch,
-            series,
+            series: self.columns.iter().map(|c| coefficients(own(c))).collect(),
             residual,
         }
     }
@@ -272,20 +261,19 @@ impl Discrete<'_> {
                 .iter()
                 .map(|r| 1 + r.jets.len())
                 .sum();
-            let points = Grid::new(GridKind::Gauss(self.degree + 1 - row.order));
-            for (i, &eta) in points.nodes.iter().enumerate() {
+            for (i, &eta) in self.rows[index].nodes.iter().enumerate() {
                 let point = state.point(model, self.stretch.xi(eta), 0.0);
                 let out = evaluate(model, KernelId::Base, &point);
                 let slopes = &out[position + 1..=position + row.jets.len()];
                 rows.push((
                     out[position],
-                    self.jacobian_row(&row.jets, slopes, &self.rows[index], i),
+                    self.jacobian_row(&row.jets, slopes, |column| &column.rows[index], i),
                 ));
             }
         }
         let case = &structure.cases[self.case];
         for end in End::BOTH {
-            let matrices = &self.ends[usize::from(end == End::Upper)];
+            let side = usize::from(end == End::Upper);
             let point = state.at_end(model, end);
             let out = evaluate(model, KernelId::BaseConditions(self.case), &point);
             let mut position = 0;
@@ -294,7 +282,7 @@ impl Discrete<'_> {
                 if condition.end == end {
                     rows.push((
                         out[position],
-                        self.jacobian_row(&condition.jets, slopes, matrices, 0),
+                        self.jacobian_row(&condition.jets, slopes, |column| &column.ends[side], 0),
                     ));
                 }
                 position += 1 + condition.jets.len();
@@ -327,7 +315,8 @@ impl Discrete<'_> {
         let mut position = 0;
         for jets in &structure.base.integrals {
             let (mut total, mut row) = (0.0, vec![0.0; self.size]);
-            for (i, &eta) in self.grid().nodes.iter().enumerate() {
+            let all = Grid::new(GridKind::Lobatto(self.degree + 1));
+            for (i, &eta) in all.nodes.iter().enumerate() {
                 let xi = self.stretch.xi(eta);
                 let out = evaluate(model, KernelId::BaseIntegrals, &state.point(model, xi, 0.0));
                 let slopes = &out[position + 1..=position + jets.len()];
@@ -336,9 +325,9 @@ impl Discrete<'_> {
                 if i == 0 {
                     total -= out[position + jets.len() + 1];
                 }
-                for (entry, slope) in row
-                    .iter_mut()
-                    .zip(self.jacobian_row(jets, slopes, &self.own, i))
+                for (entry, slope) in
+                    row.iter_mut()
+                        .zip(self.jacobian_row(jets, slopes, |column| &column.all, i))
                 {
                     *entry += weight * slope;
                 }
@@ -352,7 +341,7 @@ impl Discrete<'_> {
         &self,
         jets: &[BaseJet],
         slopes: &[f64],
-        matrices: &[Mat<f64>],
+        matrices: impl Fn(&Column) -> &Matrices,
         i: usize,
     ) -> Vec<f64> {
         let structure = self.model().structure();
@@ -362,16 +351,13 @@ impl Discrete<'_> {
             let Some(s) = structure.base.solved.iter().position(|&f| f == jet.field) else {
                 continue;
             };
-            if structure.fields[jet.field].uniform {
-                row[self.offsets[s]] += slope;
-                continue;
-            }
-            let Some(matrix) = matrices.get(jet.order) else {
+            let column = &self.columns[s];
+            let Some(matrix) = matrices(column).get(jet.order) else {
                 continue;
             };
             let factor = slope * scale.powi(jet.order as i32);
-            for j in 0..=self.degree {
-                row[self.offsets[s] + j] += factor * matrix[(i, j)];
+            for j in 0..column.grid.len() {
+                row[column.first + j] += factor * matrix[(i, j)];
             }
         }
         row
@@ -384,13 +370,12 @@ impl Discrete<'_> {
             .base
             .solved
             .iter()
-            .zip(&self.offsets)
-            .all(|(&field, &offset)| {
+            .zip(&self.columns)
+            .all(|(&field, column)| {
                 let info = &structure.fields[field];
-                let count = if info.uniform { 1 } else { self.degree + 1 };
                 // Too low a degree carries a profile that dies out a little below zero.
                 let slack = 1e-6;
-                values[offset..offset + count]
+                values[column.first..][..column.grid.len()]
                     .iter()
                     .all(|&v| v > info.lower - slack && v < info.upper + slack)
             })

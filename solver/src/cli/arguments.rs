@@ -188,6 +188,9 @@ pub struct SweepOptions {
     /// Where the table goes.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
+    /// Overwrite a file that is no table of this sweep.
+    #[arg(long)]
+    pub force: bool,
     /// A picture of growth rate, c2 and amplitude over the first axis.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,

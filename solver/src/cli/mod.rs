@@ -12,9 +12,9 @@ macro_rules! say {
 
 mod arguments;
 mod inspect;
+mod interrupt;
 mod pattern;
 mod picture;
-mod report;
 mod reproduce;
 mod solve;
 
@@ -30,6 +30,7 @@ use std::process::ExitCode;
 pub fn run(models: Vec<Box<dyn Model>>) -> ExitCode {
     // Parallelism is over points; a matrix belongs to one thread.
     faer::set_global_parallelism(faer::Par::Seq);
+    interrupt::watch();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {

@@ -6,7 +6,7 @@ use crate::data::FORMATS;
 use crate::data::plane::{attributes, dataset};
 use crate::error::{Error, Result};
 use crate::figure::pattern_pair;
-use crate::study::sweep::write_whole;
+use crate::file::write_whole;
 use crate::study::{Setup, check_wavenumber};
 use crate::weakly::{Pattern, Window, pattern as expand};
 use serde_json::json;

@@ -34,8 +34,8 @@ pub fn sweep(setup: &Setup, sweep: &Sweep, rows: &[Row]) -> Option<String> {
             .collect();
         let label = label.join(", ");
         growth.curve(&label, Style::Line, column(line, Column::A0));
-        landau.curve(&label, Style::Line, column(line, Column::A2));
-        amplitude.curve(&label, Style::Line, column(line, Column::Amplitude));
+        landau.curve_with_poles(&label, Style::Line, column(line, Column::A2));
+        amplitude.curve_with_poles(&label, Style::Line, column(line, Column::Amplitude));
     }
     panels(&setup.model.structure().title, &[growth, landau, amplitude])
 }

@@ -1,23 +1,20 @@
 //! Commands that compute.
 
 use super::arguments::{Common, CriticalOptions, Of, SweepOptions, range};
-use super::{picture, report};
+use super::{interrupt, picture};
 use crate::error::{Error, Result};
-use crate::model::C64;
-use crate::spectrum as spectra;
+use crate::file::{destination, write_whole};
 use crate::study::critical::{Quantity, Question};
-use crate::study::sweep::{Range, Sweep, write_whole};
-use crate::study::verify::judge;
-use crate::study::{
-    Axis, Setup, accuracy, check_wavenumber, critical as criticality, sensitivity,
-    verify as certificate,
-};
-use crate::weakly::{Selection, outputs};
+use crate::study::minimise::minimise;
+use crate::study::point::PointReport;
+use crate::study::spectrum::SpectrumReport;
+use crate::study::sweep::{Range, Resumed, Sweep};
+use crate::study::verify::Certificate;
+use crate::study::{Axis, Setup, check_wavenumber, critical as criticality};
+use crate::weakly::Selection;
+use crate::words;
 use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::{Map, Value, json};
-
-/// Coefficients whose error is a larger fraction than this are called unconverged.
-const UNCONVERGED: f64 = 0.05;
+use serde_json::{Map, json};
 
 pub fn selection(common: &Common) -> Selection<'static> {
     common.near.map_or(Selection::Leading, Selection::Near)
@@ -69,16 +66,16 @@ pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
                 info.name.clone(),
                 columns[field + 1]
                     .iter()
-                    .map(|&v| report::number(v))
+                    .map(|&v| words::number(v))
                     .collect(),
             );
         }
         let object = json!({
             "model": structure.name,
-            "parameters": report::parameters(setup, &state.parameters),
+            "parameters": words::parameters(setup, &state.parameters),
             "degree": state.degree,
-            "tail": report::number(state.tail()),
-            "residual": report::number(state.residual),
+            "tail": words::number(state.tail()),
+            "residual": words::number(state.residual),
             (coordinate): columns[0],
             "profiles": profiles,
         });
@@ -105,161 +102,28 @@ pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
 }
 
 pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
-    if !(k.is_finite() && k >= 0.0) {
-        return Err(Error::input(format!(
-            "--k {k}: a wavenumber is a number from 0 on"
-        )));
+    let found = SpectrumReport::compute(setup, k)?;
+    if common.json {
+        say!("{}", found.json());
+    } else {
+        say!("{found}");
     }
-    let state = setup.base(None)?;
-    setup.with_problem(&state, |problem| {
-        let direct = spectra::eigenvalues(problem, k)?;
-        let adjoint = spectra::adjoint_eigenvalues(problem, k);
-        let structure = setup.model.structure();
-        if common.json {
-            let list =
-                |values: &[C64]| -> Value { values.iter().map(|&c| report::complex(c)).collect() };
-            let mut object = json!({
-                "model": structure.name,
-                "parameters": report::parameters(setup, &state.parameters),
-                "k": k,
-                "M": setup.resolution,
-                "direct": list(&direct),
-            });
-            match &adjoint {
-                Ok(values) => {
-                    object["adjoint"] = list(values);
-                    let differences = direct.iter().map(|&c| nearest(c, values));
-                    object["difference"] = differences.collect();
-                }
-                Err(reason) => {
-                    object["adjoint"] = Value::Null;
-                    object["adjoint_missing"] = Value::String(reason.to_string());
-                }
-            }
-            say!("{object}");
-            return Ok(());
-        }
-        say!(
-            "{} at k = {k}, M = {}: leading eigenvalues",
-            structure.title,
-            setup.resolution
-        );
-        let empty = Vec::new();
-        let others = adjoint.as_ref().unwrap_or(&empty);
-        say!("{:>44}   {:>44}   {:>10}", "L", "L†", "difference");
-        for (i, &c) in direct.iter().take(20).enumerate() {
-            let other = others.get(i).map_or(String::new(), |&a| report::shown(a));
-            let difference = match others.is_empty() {
-                true => String::new(),
-                false => format!("{:.1e}", nearest(c, others)),
-            };
-            say!("{:>44}   {other:>44}   {difference:>10}", report::shown(c));
-        }
-        if let Err(reason) = adjoint {
-            say!("L†: {reason}");
-        }
-        Ok(())
-    })
-}
-
-/// Distance from an eigenvalue of L to the nearest conjugate of one of L†: zero without truncation.
-fn nearest(c: C64, adjoint: &[C64]) -> f64 {
-    let distances = adjoint.iter().map(|a| (a.conj() - c).norm());
-    distances.fold(f64::INFINITY, f64::min)
+    Ok(())
 }
 
 pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()> {
-    check_wavenumber(k)?;
     if order != 3 {
         return Err(Error::input(format!(
             "--order {order} is not available: it accepts 3"
         )));
     }
-    let state = setup.base(None)?;
-    let structure = setup.model.structure();
-    setup.with_point(&state, k, selection(common), |point| {
-        let error = accuracy::accuracy(setup, &state, point)?;
-        let resonance = accuracy::resonance(point)?;
-        let slopes = sensitivity::parameters(setup, &state, &point.expansion.pair);
-        let values = outputs(point);
-        if error.c2 > UNCONVERGED * point.c2.norm()
-            || error.c0 > UNCONVERGED * point.c0.norm().max(1e-9)
-        {
-            eprintln!(
-                "warning: not converged at M = {}: c0 ± {:.1e}, c2 ± {:.1e}; try a larger M",
-                setup.resolution, error.c0, error.c2
-            );
-        }
-        if common.json {
-            let mut named = Map::new();
-            for (info, value) in structure.outputs.iter().zip(&values) {
-                named.insert(
-                    info.name.clone(),
-                    json!([report::number(value[0]), report::number(value[1])]),
-                );
-            }
-            let mut derivatives = Map::new();
-            for (index, slope) in &slopes {
-                derivatives.insert(
-                    structure.parameters[*index].name.clone(),
-                    slope.map_or(Value::Null, report::complex),
-                );
-            }
-            say!(
-                "{}",
-                json!({
-                    "model": structure.name,
-                    "parameters": report::parameters(setup, &state.parameters),
-                    "k": k,
-                    "M": setup.resolution,
-                    "c0": report::complex(point.c0),
-                    "c2": report::complex(point.c2),
-                    "amplitude": point.amplitude().map_or(Value::Null, report::number),
-                    "bifurcation": point.bifurcation(),
-                    "normalization": structure.amplitude.description,
-                    "error": {"c0": report::number(error.c0), "c2": report::number(error.c2)},
-                    "resonance": {
-                        "mean_flow": report::number(resonance.mean_flow),
-                        "second_harmonic": report::number(resonance.second_harmonic),
-                    },
-                    "outputs": named,
-                    "dc0": derivatives,
-                })
-            );
-            return Ok(());
-        }
-        say!("{} at k = {k}, M = {}", structure.title, setup.resolution);
-        say!("  {}", report::amplitude_equation(point.c0, point.c2));
-        say!("  c0 = {}   ± {:.1e}", report::shown(point.c0), error.c0);
-        say!("  c2 = {}   ± {:.1e}", report::shown(point.c2), error.c2);
-        say!("  {}", point.bifurcation());
-        match point.amplitude() {
-            Some(amplitude) => say!(
-                "  A_e = {amplitude:.8}, normalised by {}",
-                structure.amplitude.description
-            ),
-            None => say!(
-                "  no equilibrium at cubic order; normalised by {}",
-                structure.amplitude.description
-            ),
-        }
-        say!(
-            "  distance to resonance: mean flow {:.3e}, 2:1 {:.3e}",
-            resonance.mean_flow,
-            resonance.second_harmonic
-        );
-        for (info, value) in structure.outputs.iter().zip(&values) {
-            say!("  {} = {:.8} + {:.8} A²", info.name, value[0], value[1]);
-        }
-        for (index, slope) in &slopes {
-            say!(
-                "  dc0/d{} = {}",
-                structure.parameters[*index].name,
-                slope.map_or("unknown".into(), report::shown)
-            );
-        }
-        Ok(())
-    })
+    let found = PointReport::compute(setup, k, selection(common))?;
+    if common.json {
+        say!("{}", found.json());
+    } else {
+        say!("{found}");
+    }
+    Ok(())
 }
 
 pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Result<()> {
@@ -273,7 +137,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         }
         setup.moved(axis, value)?;
     }
-    let minimise = match &options.minimize {
+    let range_of_k = match &options.minimize {
         Some(text) => {
             let (name, bounds) = range("--minimize", text, 2).map_err(Error::Input)?;
             if name != "k" || axis == Axis::Wavenumber || bounds[0] >= bounds[1] {
@@ -286,13 +150,13 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         }
         None => None,
     };
-    if axis != Axis::Wavenumber && options.k.is_none() && minimise.is_none() {
+    if axis != Axis::Wavenumber && options.k.is_none() && range_of_k.is_none() {
         return Err(Error::input(format!(
             "--vary {}: give the wavenumber with --k, or a range with --minimize k=A:B",
             options.vary
         )));
     }
-    if minimise.is_some() && options.of != Of::Growth {
+    if range_of_k.is_some() && options.of != Of::Growth {
         return Err(Error::input("--minimize goes with --of growth"));
     }
     if let Some(k) = options.k {
@@ -313,8 +177,8 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         near: common.near,
     };
     let bar = progress("scanning");
-    let found = match minimise {
-        Some(bounds) => vec![criticality::minimise(setup, question, bounds, &bar)?],
+    let found = match range_of_k {
+        Some(bounds) => vec![minimise(setup, question, bounds, &bar)?],
         None => criticality::critical(setup, question, &bar)?,
     };
     let first = &found[0];
@@ -334,18 +198,19 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
             json!({
                 "parameter": options.vary,
                 "of": name,
-                "value": report::number(first.value),
-                "k": report::number(first.k),
-                "c0": report::complex(first.c0),
+                "value": words::number(first.value),
+                "error": words::number(first.error),
+                "k": words::number(first.k),
+                "c0": words::complex(first.c0),
             })
         );
     } else {
         say!(
-            "{} = {:.10} (of {name}) at k = {:.10}, c0 = {}",
+            "{} = {} (of {name}) at k = {:.10}, c0 = {}",
             options.vary,
-            first.value,
+            words::with_error(first.value, first.error),
             first.k,
-            report::shown(first.c0)
+            words::shown(first.c0)
         );
     }
     Ok(())
@@ -403,7 +268,15 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
         near: common.near,
         k: options.k,
     };
-    let rows = sweep.run_to(&options.out, &progress("sweeping"))?;
+    if let Some(plot) = &options.plot {
+        destination(plot)?;
+    }
+    if !options.force {
+        sweep.check_output(&options.out)?;
+    }
+    interrupt::keeping(&options.out);
+    let rows = sweep.run_to(&options.out, &progress("sweeping"), resumed)?;
+    interrupt::finished();
     if let Some(path) = &options.plot
         && let Some(drawn) = picture::sweep(setup, &sweep, &rows)
     {
@@ -436,47 +309,28 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
     Ok(())
 }
 
-pub fn verify(setup: &Setup, k: f64, common: &Common) -> Result<()> {
-    let checks = certificate::verify(setup, k, selection(common))?;
-    if common.json {
-        let list: Vec<Value> = checks
-            .iter()
-            .map(|c| {
-                json!({"part": c.part, "name": c.name, "value": report::number(c.value),
-                       "bound": report::number(c.bound), "passed": c.passed, "detail": c.detail})
-            })
-            .collect();
-        say!(
-            "{}",
-            json!({"model": setup.model.structure().name, "k": k, "M": setup.resolution, "checks": list})
+/// Says what an earlier run has left.
+fn resumed(found: Resumed) {
+    if found.taken > 0 {
+        eprintln!(
+            "resumed: {} rows are taken from an interrupted run",
+            found.taken
         );
-    } else {
-        say!(
-            "{} at k = {k}, M = {}",
-            setup.model.structure().title,
-            setup.resolution
-        );
-        let mut part = 0;
-        for check in &checks {
-            if check.part != part {
-                part = check.part;
-                let titles = [
-                    "residual order",
-                    "duality",
-                    "two routes",
-                    "nonlinear forms",
-                    "convergence",
-                ];
-                say!("{part}. {}", titles[part - 1]);
-            }
-            let mark = if check.passed { "  ok  " } else { "FAILED" };
-            say!(
-                "  {mark} {:<48} {:>12.4e}   {}",
-                check.name,
-                check.value,
-                check.detail
-            );
-        }
     }
-    judge(&checks)
+    if found.damaged > 0 {
+        eprintln!(
+            "note: {} lines of its journal do not fit and are computed again",
+            found.damaged
+        );
+    }
+}
+
+pub fn verify(setup: &Setup, k: f64, common: &Common) -> Result<()> {
+    let certificate = Certificate::compute(setup, k, selection(common))?;
+    if common.json {
+        say!("{}", certificate.json());
+    } else {
+        say!("{certificate}");
+    }
+    certificate.judge()
 }

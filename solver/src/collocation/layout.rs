@@ -1,9 +1,12 @@
 //! Staggered layout: which unknown stands where, and which equation is collocated where.
 //!
-//! A field without boundary condition lives on M Gauss points; a field with q conditions has M+1
-//! extrema, and its balance is collocated at M+1−q points (the interior extrema for q = 2).
+//! By the offsets of the system (Douglis–Nirenberg numbers): field j has N + t_j values, balance i is
+//! collocated at N + c_i points, and the boundary conditions, rows that belong to no field, make up the
+//! difference. M is the highest degree: the widest field has M + 1 values.
 
 use super::chebyshev::{Grid, GridKind};
+use crate::error::{Error, Result};
+use crate::model::OffsetsInfo;
 use faer::Mat;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
@@ -28,48 +31,66 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Layout for fields with `conditions[f]` boundary conditions each, row r belonging to the
-    /// field `pairing[r]`; `resolution` is M, `None` without a cross-stream coordinate.
-    pub fn new(conditions: &[usize], pairing: &[usize], resolution: Option<usize>) -> Self {
-        let grid = |field: usize| match (resolution, conditions[field]) {
-            (None, _) => GridKind::Point,
-            (Some(m), 0) => GridKind::Gauss(m),
-            (Some(m), _) => GridKind::Lobatto(m + 1),
+    /// The layout of a system at M = `resolution`, `None` without a cross-stream coordinate.
+    ///
+    /// # Errors
+    /// An M at which some balance would have no point.
+    pub fn new(offsets: &OffsetsInfo, resolution: Option<usize>) -> Result<Self> {
+        let widest = offsets.columns.iter().copied().max().unwrap_or(0).max(1);
+        if resolution.is_some_and(|m| m < widest + 2) {
+            return Err(Error::input(format!(
+                "M = {} is too small: at least {}",
+                resolution.unwrap_or(0),
+                widest + 2
+            )));
+        }
+        let counts = |offsets: &[usize]| -> Vec<Option<usize>> {
+            let count = |offset: &usize| resolution.map(|m| m + 1 - widest + offset);
+            offsets.iter().map(count).collect()
         };
-        let mut columns = Vec::new();
-        let mut size = 0;
-        for field in 0..conditions.len() {
-            let kind = grid(field);
-            columns.push(Block {
-                grid: kind,
-                offset: size,
-                len: kind.count(),
-            });
-            size += kind.count();
-        }
-        let mut rows = Vec::new();
-        let mut offset = 0;
-        for &field in pairing {
-            let kind = match (resolution, conditions[field]) {
-                (None, _) => GridKind::Point,
-                (Some(m), 0) => GridKind::Gauss(m),
-                (Some(m), 2) => GridKind::Interior(m - 1),
-                (Some(m), q) => GridKind::Gauss((m + 1).saturating_sub(q)),
-            };
-            rows.push(Block {
-                grid: kind,
-                offset,
-                len: kind.count(),
-            });
-            offset += kind.count();
-        }
-        Layout {
+        let columns = counts(&offsets.columns);
+        let rows = counts(&offsets.rows);
+        let (columns, size) = blocks(columns.into_iter().map(|n| column_grid(n, resolution)));
+        let (rows, walls) = blocks(rows.into_iter().map(|n| row_grid(n, resolution)));
+        Ok(Layout {
             columns,
             rows,
-            walls: offset,
+            walls,
             size,
-        }
+        })
     }
+}
+
+/// The points of a field's values: extrema for the widest, and those of the rows where the counts agree.
+fn column_grid(count: Option<usize>, resolution: Option<usize>) -> GridKind {
+    match count.zip(resolution) {
+        None => GridKind::Point,
+        Some((n, m)) if n == m + 1 => GridKind::Lobatto(n),
+        Some((n, m)) if n + 1 == m => GridKind::Interior(n),
+        Some((n, _)) => GridKind::Gauss(n),
+    }
+}
+
+/// The points of a balance. Interior extrema wherever two conditions or more are taken away: with
+/// Chebyshev–Gauss points there, operators of fourth order have spurious modes.
+fn row_grid(count: Option<usize>, resolution: Option<usize>) -> GridKind {
+    match count.zip(resolution) {
+        None => GridKind::Point,
+        Some((n, m)) if n < m => GridKind::Interior(n),
+        Some((n, _)) => GridKind::Gauss(n),
+    }
+}
+
+/// Blocks one after another, and where they end.
+fn blocks(grids: impl Iterator<Item = GridKind>) -> (Vec<Block>, usize) {
+    let mut offset = 0;
+    let mut blocks = Vec::new();
+    for grid in grids {
+        let len = grid.count();
+        blocks.push(Block { grid, offset, len });
+        offset += len;
+    }
+    (blocks, offset)
 }
 
 /// From which grid, to which, and the order of the derivative.

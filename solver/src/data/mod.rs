@@ -6,7 +6,7 @@ pub mod plane;
 mod vtk;
 
 use crate::error::{Error, Result};
-use crate::study::sweep::write_whole;
+use crate::file::write_whole;
 use std::path::Path;
 
 /// A labelled array over some of the axes, the last varying fastest.

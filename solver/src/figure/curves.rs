@@ -54,6 +54,13 @@ impl Panel {
         });
     }
 
+    /// A curve with poles: what stands far out of its bulk is a gap.
+    pub fn curve_with_poles(&mut self, label: &str, style: Style, points: Vec<(f64, f64)>) {
+        let most = bulk(points.iter().map(|p| p.1));
+        let kept = |(x, y): (f64, f64)| (x, if y.abs() <= most { y } else { f64::NAN });
+        self.curve(label, style, points.into_iter().map(kept).collect());
+    }
+
     /// Runs of points that can be drawn.
     fn runs(&self, curve: &Curve) -> Vec<Vec<(f64, f64)>> {
         let [log_x, log_y] = self.logarithmic;
@@ -155,7 +162,7 @@ pub fn panels(title: &str, panels: &[Panel]) -> Option<String> {
 }
 
 /// The values beyond which a curve with poles is cut: six times its median size.
-pub fn bulk(values: impl Iterator<Item = f64>) -> f64 {
+fn bulk(values: impl Iterator<Item = f64>) -> f64 {
     let mut sizes: Vec<f64> = values.map(f64::abs).filter(|v| v.is_finite()).collect();
     sizes.sort_by(f64::total_cmp);
     6.0 * sizes.get(sizes.len() / 2).copied().unwrap_or(f64::INFINITY)

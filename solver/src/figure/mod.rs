@@ -5,7 +5,7 @@ mod curves;
 mod pattern;
 mod plane;
 
-pub use curves::{Curve, Panel, Style, bulk, panels};
+pub use curves::{Curve, Panel, Style, panels};
 pub use pattern::pattern_pair;
 pub use plane::{Plane, planes};
 

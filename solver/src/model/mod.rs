@@ -4,19 +4,20 @@
 //! this module knows where the kernels come from, or which model they belong to.
 
 mod number;
+mod rounding;
 mod tape;
 
 pub use landau_codegen::structure::*;
-pub use number::{C64, Dual, Number, SERIES_LENGTH, Series};
+pub use number::{C64, Number, SERIES_LENGTH, Series};
+pub use rounding::WithRounding;
 pub use tape::TapeModel;
 
 /// A residual call for one of the number types of the closed list: inputs are the jets of
 /// [`Structure::residual_jets`], outputs one value a balance or condition.
 pub enum ResidualCall<'a> {
     Real(&'a [f64], &'a mut [f64]),
-    Complex(&'a [C64], &'a mut [C64]),
-    /// With one derivative.
-    Dual(&'a [Dual], &'a mut [Dual]),
+    /// With a bound of the rounding errors.
+    Rounding(&'a [WithRounding], &'a mut [WithRounding]),
     /// Truncated power series with complex coefficients.
     Series(&'a [Series], &'a mut [Series]),
 }

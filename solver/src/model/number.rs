@@ -91,9 +91,6 @@ pub struct Truncated<T, const N: usize>(pub [T; N]);
 /// Series to third degree.
 pub type Series = Truncated<C64, SERIES_LENGTH>;
 
-/// Value and one derivative.
-pub type Dual = Truncated<f64, 2>;
-
 impl<T: Number, const N: usize> Truncated<T, N> {
     /// a + b ε
     pub fn line(value: T, slope: T) -> Self {

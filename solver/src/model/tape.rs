@@ -81,8 +81,7 @@ impl Model for TapeModel {
         };
         match call {
             ResidualCall::Real(x, out) => run_residual(kernel, point, x, out),
-            ResidualCall::Complex(x, out) => run_residual(kernel, point, x, out),
-            ResidualCall::Dual(x, out) => run_residual(kernel, point, x, out),
+            ResidualCall::Rounding(x, out) => run_residual(kernel, point, x, out),
             ResidualCall::Series(x, out) => run_residual(kernel, point, x, out),
         }
     }

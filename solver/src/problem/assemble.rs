@@ -1,9 +1,11 @@
 //! Matrices from terms: block (row, column) = Σ diag(coefficient) · (i k)^a |k|^b · D^d.
 
 use super::block::{Block, Blocks, Derivative};
+use super::closure::{self, Border};
 use super::{LinearProblem, Problem, WallRow, quarter_turn};
 use crate::collocation::{Discretisation, GridKind, Layout};
 use crate::dense::{Scalar, bordered};
+use crate::error::Result;
 use crate::model::{C64, End, Jet};
 use faer::Mat;
 use std::collections::BTreeMap;
@@ -55,8 +57,8 @@ impl LinearProblem {
         quarter_turn(turns) * size
     }
 
-    /// Turns that make a wall's row real.
-    fn wall_turn(&self, wall: &WallRow) -> usize {
+    /// Turns that make a wall's row real: one for a condition that is odd in the mirror.
+    pub(super) fn wall_turn(&self, wall: &WallRow) -> usize {
         let first = wall.linear.first().map(|(jet, _)| *jet);
         first.map_or(0, |jet| {
             (self.column_turns[usize::from(jet.field)] + usize::from(jet.x)) % 2
@@ -245,18 +247,18 @@ impl Problem<'_> {
         )
     }
 
-    /// σ M0 − L, with the boundary conditions as rows; bordered at k = 0.
+    /// σ M0 − L, the boundary conditions being rows of L without mass; bordered at k = 0.
     pub fn shifted<T: Scalar>(&self, k: f64, shift: C64) -> Mat<T> {
         let combination = Combination {
             mass: shift,
             operator: C64::new(-1.0, 0.0),
-            walls: 1.0,
+            walls: -1.0,
         };
         let matrix = self
             .direct
             .matrix(self.discretisation, self.scale(), k, combination);
         if k == 0.0 {
-            self.bordered(matrix)
+            bordered_by(matrix, &self.borders)
         } else {
             matrix
         }
@@ -264,26 +266,44 @@ impl Problem<'_> {
 
     /// L and M0 at k = 0 with the borders of the closures.
     pub fn bordered_pencil<T: Scalar>(&self) -> (Mat<T>, Mat<T>) {
-        let (operator, mass) = self.pencil::<T>(0.0);
-        let n = mass.nrows();
-        let size = n + self.borders.len();
-        let mass = Mat::from_fn(size, size, |i, j| {
-            if i < n && j < n {
-                mass[(i, j)]
-            } else {
-                T::from_complex(C64::new(0.0, 0.0))
-            }
-        });
-        (self.bordered(operator), mass)
+        with_borders(self.pencil::<T>(0.0), &self.borders)
     }
 
-    fn bordered<T: Scalar>(&self, matrix: Mat<T>) -> Mat<T> {
-        let real = |value: f64| T::from_complex(C64::new(value, 0.0));
-        let borders = self.borders.iter().map(|border| {
-            let column = border.column.iter().map(|&v| real(v)).collect();
-            let row = border.row.iter().map(|&v| real(v)).collect();
-            (column, row)
-        });
-        bordered(&matrix, &borders.collect::<Vec<_>>())
+    /// The same for the adjoint problem.
+    ///
+    /// # Errors
+    /// A model without adjoint boundary conditions, or whose closures have no adjoint.
+    pub fn bordered_adjoint_pencil<T: Scalar>(&self) -> Result<(Mat<T>, Mat<T>)> {
+        let adjoint = self.adjoint()?;
+        let layout = &adjoint.layout;
+        let borders = closure::adjoint(self.model, self.base, layout, self.discretisation)?;
+        Ok(with_borders(self.pencil_of(adjoint, 0.0), &borders))
     }
+}
+
+/// A pencil with borders that have no mass.
+fn with_borders<T: Scalar>(
+    (operator, mass): (Mat<T>, Mat<T>),
+    borders: &[Border],
+) -> (Mat<T>, Mat<T>) {
+    let n = mass.nrows();
+    let size = n + borders.len();
+    let mass = Mat::from_fn(size, size, |i, j| {
+        if i < n && j < n {
+            mass[(i, j)]
+        } else {
+            T::zero_impl()
+        }
+    });
+    (bordered_by(operator, borders), mass)
+}
+
+fn bordered_by<T: Scalar>(matrix: Mat<T>, borders: &[Border]) -> Mat<T> {
+    let real = |value: f64| T::from_complex(C64::new(value, 0.0));
+    let borders = borders.iter().map(|border| {
+        let column = border.column.iter().map(|&v| real(v)).collect();
+        let row = border.row.iter().map(|&v| real(v)).collect();
+        (column, row)
+    });
+    bordered(&matrix, &borders.collect::<Vec<_>>())
 }

@@ -1,13 +1,20 @@
-//! Bordering of the problem at k = 0.
+//! Bordering of the problems at k = 0.
+//!
+//! [L c; r 0]: the row r closes the problem (∫ density = 0), the column c carries its multiplier into the
+//! balances. The adjoint problem is bordered by the same two, exchanged: ∫ c·Y = 0, and the density in the
+//! rows of the fields.
 
 use crate::base::BaseState;
-use crate::collocation::{Discretisation, Grid, GridKind, Layout, clenshaw_curtis};
-use crate::model::{ClosureKind, KernelId, Model, evaluate};
+use crate::collocation::{Block, Discretisation, Grid, GridKind, Layout, clenshaw_curtis};
+use crate::error::{Error, Result};
+use crate::model::{ClosureInfo, ClosureKind, Jet, KernelId, Model, evaluate};
 
 /// One border: a row that closes the problem, and the column of its multiplier.
 #[derive(Clone, Debug)]
 pub struct Border {
     pub kind: ClosureKind,
+    /// What is closed, in words: `conserved n`, `gauge p`, `unknown G`.
+    pub name: String,
     /// The gauge or the unknown number.
     pub field: Option<usize>,
     /// Coefficients of the unknowns.
@@ -16,97 +23,224 @@ pub struct Border {
     pub column: Vec<f64>,
 }
 
-/// The borders of a case: integrals by spectral quadrature, multipliers through the balances.
-pub fn borders(
+/// What closes a case, with its weights at any place.
+struct Closures<'a> {
+    model: &'a dyn Model,
+    base: &'a BaseState,
+    discretisation: &'a Discretisation,
+}
+
+/// Weights of one closure at one place.
+struct Weights {
+    density: Vec<f64>,
+    /// By balance, as `ClosureInfo::column` lists them.
+    column: Vec<f64>,
+}
+
+/// The borders of the direct problem.
+pub fn direct(
     model: &dyn Model,
     base: &BaseState,
     layout: &Layout,
     discretisation: &Discretisation,
 ) -> Vec<Border> {
-    let structure = model.structure();
-    let case = &structure.cases[base.case];
-    let kernel = KernelId::Closures(base.case);
-    let point = structure.coordinate.is_none();
-    let half = if point {
-        0.5
-    } else {
-        0.5 * (base.upper - base.lower)
+    let closures = Closures {
+        model,
+        base,
+        discretisation,
     };
-    let longest = layout.columns.iter().map(|b| b.len).max().unwrap_or(1);
-    let quadrature = if point {
-        GridKind::Point
-    } else {
-        GridKind::Lobatto(2 * longest + 1)
+    let infos = closures.infos().iter().enumerate();
+    let border = |(index, info): (usize, &ClosureInfo)| {
+        let jets: Vec<Jet> = info.density.clone();
+        let row = closures.integral(layout, &jets, |xi| closures.at(index, xi).density);
+        let column = match info.kind {
+            ClosureKind::Unknown => closures.unknown_column(layout, info.field),
+            _ => closures.column(layout, &info.column, |xi| closures.at(index, xi).column),
+        };
+        Border {
+            kind: info.kind,
+            name: closures.name(info),
+            field: info.field,
+            row,
+            column,
+        }
     };
-    let nodes = Grid::new(quadrature).nodes;
-    let weights = clenshaw_curtis(nodes.len());
-    let values: Vec<Vec<f64>> = nodes
-        .iter()
-        .map(|&xi| evaluate(model, kernel, &base.point(model, xi, 0.0)))
-        .collect();
-    let mut borders = Vec::new();
-    let mut position = 0;
-    for closure in &case.closures {
+    infos.map(border).collect()
+}
+
+/// The borders of the adjoint problem, whose columns are balances and whose rows are fields.
+///
+/// # Errors
+/// An integral of a derivative, which has no density.
+pub fn adjoint(
+    model: &dyn Model,
+    base: &BaseState,
+    layout: &Layout,
+    discretisation: &Discretisation,
+) -> Result<Vec<Border>> {
+    let closures = Closures {
+        model,
+        base,
+        discretisation,
+    };
+    let infos = closures.infos().iter().enumerate();
+    let border = |(index, info): (usize, &ClosureInfo)| {
+        if info.density.iter().any(|jet| jet.y > 0) {
+            return Err(Error::computation(
+                "the adjoint problem at k = 0 has no closure: an integral condition holds a derivative",
+            ));
+        }
+        let fields: Vec<usize> = info.density.iter().map(|j| usize::from(j.field)).collect();
+        let column = closures.column(layout, &fields, |xi| closures.at(index, xi).density);
+        let row = match info.kind {
+            ClosureKind::Unknown => {
+                let balances: Vec<usize> = (0..layout.columns.len()).collect();
+                closures.integral(layout, &values(&balances), |xi| {
+                    closures.unknown_weights(info.field, xi)
+                })
+            }
+            _ => closures.integral(layout, &values(&info.column), |xi| {
+                closures.at(index, xi).column
+            }),
+        };
+        Ok(Border {
+            kind: info.kind,
+            name: closures.name(info),
+            field: info.field,
+            row,
+            column,
+        })
+    };
+    infos.map(border).collect()
+}
+
+fn values(columns: &[usize]) -> Vec<Jet> {
+    columns.iter().map(|&c| Jet::value(c)).collect()
+}
+
+impl Closures<'_> {
+    fn infos(&self) -> &[ClosureInfo] {
+        &self.model.structure().cases[self.base.case].closures
+    }
+
+    fn name(&self, info: &ClosureInfo) -> String {
+        let fields = &self.model.structure().fields;
+        let name = |field: usize| fields[field].name.as_str();
+        let named: Vec<&str> = match info.field {
+            Some(field) => vec![name(field)],
+            None => info
+                .density
+                .iter()
+                .map(|j| name(usize::from(j.field)))
+                .collect(),
+        };
+        let kind = match info.kind {
+            ClosureKind::Conserved => "conserved",
+            ClosureKind::Gauge => "gauge",
+            ClosureKind::Unknown => "unknown",
+        };
+        format!("{kind} {}", named.join(" + "))
+    }
+
+    /// The weights of one closure at ξ.
+    fn at(&self, index: usize, xi: f64) -> Weights {
+        let kernel = KernelId::Closures(self.base.case);
+        let all = evaluate(self.model, kernel, &self.base.point(self.model, xi, 0.0));
+        let length = |info: &ClosureInfo| info.density.len() + info.column.len();
+        let infos = self.infos();
+        let first: usize = infos[..index].iter().map(length).sum();
+        let (density, column) =
+            all[first..][..length(&infos[index])].split_at(infos[index].density.len());
+        Weights {
+            density: density.to_vec(),
+            column: column.to_vec(),
+        }
+    }
+
+    /// Σ ∫ weight · jet dy as a row over the unknowns, by spectral quadrature.
+    fn integral(
+        &self,
+        layout: &Layout,
+        jets: &[Jet],
+        weights: impl Fn(f64) -> Vec<f64>,
+    ) -> Vec<f64> {
+        let point = self.model.structure().coordinate.is_none();
+        let (half, scale) = if point {
+            (0.5, 1.0)
+        } else {
+            (1.0 / self.base.scale(), self.base.scale())
+        };
+        let longest = layout.columns.iter().map(|b| b.len).max().unwrap_or(1);
+        let quadrature = match point {
+            true => GridKind::Point,
+            false => GridKind::Lobatto(2 * longest + 1),
+        };
+        let nodes = Grid::new(quadrature).nodes;
         let mut row = vec![0.0; layout.size];
-        for (offset, jet) in closure.density.iter().enumerate() {
-            let field = usize::from(jet.field);
-            let Some(block) = layout.columns.get(field) else {
-                continue;
-            };
-            let order = usize::from(jet.y);
-            let matrix = discretisation.matrix(block.grid, quadrature, order);
-            let scale = if point {
-                1.0
-            } else {
-                base.scale().powi(order as i32)
-            };
-            for (q, weight) in weights.iter().enumerate() {
-                let factor = weight * half * values[q][position + offset] * scale;
+        for ((q, &xi), quadrature_weight) in
+            nodes.iter().enumerate().zip(clenshaw_curtis(nodes.len()))
+        {
+            for (jet, weight) in jets.iter().zip(weights(xi)) {
+                let Some(block) = layout.columns.get(usize::from(jet.field)) else {
+                    continue;
+                };
+                let order = usize::from(jet.y);
+                let matrix = self.discretisation.matrix(block.grid, quadrature, order);
+                let factor = quadrature_weight * half * weight * scale.powi(order as i32);
                 for j in 0..block.len {
                     row[block.offset + j] += factor * matrix[(q, j)];
                 }
             }
         }
-        position += closure.density.len();
+        row
+    }
+
+    /// Weights at the points of the rows that they belong to.
+    fn column(
+        &self,
+        layout: &Layout,
+        rows: &[usize],
+        weights: impl Fn(f64) -> Vec<f64>,
+    ) -> Vec<f64> {
         let mut column = vec![0.0; layout.size];
-        for (offset, &balance) in closure.column.iter().enumerate() {
-            let block = &layout.rows[balance];
-            for (i, &xi) in Grid::new(block.grid).nodes.iter().enumerate() {
-                let out = evaluate(model, kernel, &base.point(model, xi, 0.0));
-                column[block.offset + i] += out[position + offset];
+        for (offset, &row) in rows.iter().enumerate() {
+            let Some(block) = layout.rows.get(row) else {
+                continue;
+            };
+            for_points(block, |i, xi| column[i] += weights(xi)[offset]);
+        }
+        column
+    }
+
+    /// An unknown number enters the balances with its own coefficients: −L in its column.
+    fn unknown_column(&self, layout: &Layout, field: Option<usize>) -> Vec<f64> {
+        let mut column = vec![0.0; layout.size];
+        for (balance, block) in layout.rows.iter().enumerate() {
+            for_points(block, |i, xi| {
+                column[i] += self.unknown_weights(field, xi)[balance];
+            });
+        }
+        column
+    }
+
+    /// −L of an unknown number, balance by balance.
+    fn unknown_weights(&self, field: Option<usize>, xi: f64) -> Vec<f64> {
+        let structure = self.model.structure();
+        let point = self.base.point(self.model, xi, 0.0);
+        let coefficients = evaluate(self.model, KernelId::Linear, &point);
+        let mut weights = vec![0.0; structure.balances.len()];
+        for (term, coefficient) in structure.linear.iter().zip(&coefficients) {
+            if term.jet.t == 0 && Some(usize::from(term.jet.field)) == field {
+                weights[term.row] -= coefficient;
             }
         }
-        position += closure.column.len();
-        if closure.kind == ClosureKind::Unknown {
-            unknown_column(model, base, layout, closure.field, &mut column);
-        }
-        borders.push(Border {
-            kind: closure.kind,
-            field: closure.field,
-            row,
-            column,
-        });
+        weights
     }
-    borders
 }
 
-/// An unknown number enters the balances with its own coefficients: −L in its column.
-fn unknown_column(
-    model: &dyn Model,
-    base: &BaseState,
-    layout: &Layout,
-    field: Option<usize>,
-    column: &mut [f64],
-) {
-    let structure = model.structure();
-    for (balance, block) in layout.rows.iter().enumerate() {
-        for (i, &xi) in Grid::new(block.grid).nodes.iter().enumerate() {
-            let out = evaluate(model, KernelId::Linear, &base.point(model, xi, 0.0));
-            for (term, coefficient) in structure.linear.iter().zip(&out) {
-                if term.row == balance && Some(usize::from(term.jet.field)) == field {
-                    column[block.offset + i] -= coefficient;
-                }
-            }
-        }
+/// Calls `action` with the position and ξ of every point of a block.
+fn for_points(block: &Block, mut action: impl FnMut(usize, f64)) {
+    for (i, &xi) in Grid::new(block.grid).nodes.iter().enumerate() {
+        action(block.offset + i, xi);
     }
 }

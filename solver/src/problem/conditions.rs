@@ -7,8 +7,6 @@ use crate::model::{End, Jet, KernelId, Model, evaluate};
 #[derive(Clone, Debug)]
 pub struct WallRow {
     pub end: End,
-    /// The column block whose equations it replaces.
-    pub owner: usize,
     pub linear: Vec<(Jet, f64)>,
     pub nonlinear: Vec<(Vec<Jet>, f64)>,
 }
@@ -23,7 +21,6 @@ pub fn direct(model: &dyn Model, base: &BaseState) -> Vec<WallRow> {
     for condition in &case.conditions {
         let mut row = WallRow {
             end: condition.end,
-            owner: condition.field,
             linear: Vec::new(),
             nonlinear: Vec::new(),
         };
@@ -59,7 +56,6 @@ pub fn adjoint(model: &dyn Model, base: &BaseState) -> Result<Vec<WallRow>, Stri
         }
         rows.push(WallRow {
             end: condition.end,
-            owner: condition.balance,
             linear,
             nonlinear: Vec::new(),
         });

@@ -1,8 +1,13 @@
-//! The mirror symmetry x → −x at k = 0: a mean mode has no odd part.
+//! The mirror symmetry x → −x at k = 0: the mean modes of a steady pattern have no odd part (those of a
+//! wave have: it drives a mean flow).
 
-use super::Problem;
-use crate::dense::{Factorised, Scalar};
+use super::{Blocks, Problem};
+use crate::dense::{Factorised, Scalar, norm, scaled};
+use crate::model::C64;
 use faer::Mat;
+
+/// Powers of the inverse by which a distance from singularity is estimated.
+const POWERS: usize = 16;
 
 /// The equations and unknowns of the even fields among those of the problem bordered at k = 0.
 pub struct EvenPart {
@@ -25,7 +30,7 @@ impl Problem<'_> {
         let mut columns = unknowns.clone();
         let mut rows = even(&parity.rows, &layout.rows);
         for (index, wall) in self.direct.walls.iter().enumerate() {
-            if !parity.fields[wall.owner] {
+            if self.direct.wall_turn(wall) == 0 {
                 rows.push(layout.walls + index);
             }
         }
@@ -40,23 +45,71 @@ impl Problem<'_> {
     }
 }
 
-impl EvenPart {
-    /// A⁻¹ b for an even b, odd unknowns being zero; nothing where A is singular.
-    pub fn solve<T: Scalar>(&self, matrix: &Mat<T>, right: &[T]) -> Option<Vec<T>> {
-        let n = self.rows.len();
-        let mut part = Mat::zeros(n, n);
-        for (j, &column) in self.columns.iter().enumerate() {
+/// A system factorised whole, or in its even part alone.
+pub struct Solver<T: Scalar> {
+    factors: Factorised<T>,
+    part: Option<EvenPart>,
+    size: usize,
+}
+
+impl<T: Scalar> Solver<T> {
+    /// Of the whole matrix.
+    pub fn whole(matrix: Mat<T>) -> Self {
+        Solver {
+            size: matrix.nrows(),
+            factors: Factorised::new(matrix),
+            part: None,
+        }
+    }
+
+    /// Of the even part, odd unknowns being zero.
+    pub fn even(matrix: &Mat<T>, part: EvenPart) -> Self {
+        let n = part.rows.len();
+        let mut own = Mat::zeros(n, n);
+        for (j, &column) in part.columns.iter().enumerate() {
             let source = matrix.col_as_slice(column);
-            for (target, &row) in part.col_as_slice_mut(j).iter_mut().zip(&self.rows) {
+            for (target, &row) in own.col_as_slice_mut(j).iter_mut().zip(&part.rows) {
                 *target = source[row];
             }
         }
-        let right: Vec<T> = self.rows.iter().map(|&row| right[row]).collect();
-        let mut solution = vec![T::zero_impl(); matrix.ncols()];
-        let even = Factorised::new(part).solve_regular(&right)?;
-        for (&column, value) in self.columns.iter().zip(even) {
+        Solver {
+            size: matrix.nrows(),
+            factors: Factorised::new(own),
+            part: Some(part),
+        }
+    }
+
+    /// A⁻¹ b, or nothing where A is singular.
+    pub fn solve(&self, right: &[T]) -> Option<Vec<T>> {
+        let Some(part) = &self.part else {
+            return self.factors.solve_regular(right);
+        };
+        let right: Vec<T> = part.rows.iter().map(|&row| right[row]).collect();
+        let mut solution = vec![T::zero_impl(); self.size];
+        for (&column, value) in part.columns.iter().zip(self.factors.solve_regular(&right)?) {
             solution[column] = value;
         }
         Some(solution)
+    }
+
+    /// The distance of the shift from the nearest eigenvalue, by the growth of (σ M0 − L)⁻ⁿ; to a few parts
+    /// in a hundred.
+    pub fn distance(&self, mass: &Blocks<T>) -> f64 {
+        let entry = |i: usize| T::from_complex(C64::new(1.0 + 0.37 * ((i * i) as f64).sin(), 0.0));
+        let mut x: Vec<T> = (0..mass.size).map(entry).collect();
+        let mut sizes = Vec::with_capacity(POWERS);
+        for _ in 0..POWERS {
+            let size = norm(&x);
+            sizes.push(size);
+            let mut right = mass.apply(&scaled(&x, 1.0 / size));
+            right.resize(self.size, T::zero_impl());
+            match self.solve(&right) {
+                Some(next) => x = next[..mass.size].to_vec(),
+                None => return 0.0,
+            }
+        }
+        let last = &sizes[POWERS / 2..];
+        let mean = last.iter().map(|s| s.ln()).sum::<f64>() / last.len() as f64;
+        (-mean).exp()
     }
 }

@@ -14,11 +14,12 @@ pub use assemble::Combination;
 pub use block::Blocks;
 pub use closure::Border;
 pub use conditions::WallRow;
+pub use mirror::Solver;
 
 use crate::base::BaseState;
 use crate::collocation::{Discretisation, Grid, GridKind, Layout, clenshaw_curtis};
 use crate::error::{Error, Result};
-use crate::model::{C64, Jet, KernelId, Model, Structure, evaluate};
+use crate::model::{C64, Jet, KernelId, Model, OffsetsInfo, Structure, evaluate};
 use faer::Mat;
 use std::sync::OnceLock;
 
@@ -93,7 +94,7 @@ impl<'m> Problem<'m> {
             known: Vec::new(),
         };
         let direct = Self::direct(&mut points, resolution)?;
-        let borders = closure::borders(model, base, &direct.layout, discretisation);
+        let borders = closure::direct(model, base, &direct.layout, discretisation);
         let mut nonlinear: Vec<Vec<Vec<f64>>> = Vec::new();
         for (row, block) in direct.layout.rows.iter().enumerate() {
             let twin = direct.layout.rows[..row]
@@ -144,11 +145,7 @@ impl<'m> Problem<'m> {
         let (model, base) = (points.model, points.base);
         let structure = model.structure();
         let walls = conditions::direct(model, base);
-        let profiles = structure.profiles();
-        let counts: Vec<usize> = (0..profiles)
-            .map(|f| walls.iter().filter(|w| w.owner == f).count())
-            .collect();
-        let layout = layout(structure, &counts, &structure.pairing, resolution)?;
+        let layout = layout(structure, &structure.offsets, resolution)?;
         let (column_turns, row_turns) = turns(structure);
         let terms = terms(points, &layout, KernelId::Linear)?;
         Ok(LinearProblem::new(
@@ -164,15 +161,7 @@ impl<'m> Problem<'m> {
         let (model, base) = (points.model, points.base);
         let structure = model.structure();
         let walls = conditions::adjoint(model, base).map_err(Error::Computation)?;
-        let profiles = structure.profiles();
-        // Columns are balances; the row of field f belongs to the balance paired with it.
-        let pairing: Vec<usize> = (0..profiles)
-            .map(|f| structure.pairing.iter().position(|&p| p == f).unwrap_or(f))
-            .collect();
-        let counts: Vec<usize> = (0..profiles)
-            .map(|b| walls.iter().filter(|w| w.owner == b).count())
-            .collect();
-        let layout = layout(structure, &counts, &pairing, resolution)?;
+        let layout = layout(structure, &structure.adjoint_offsets, resolution)?;
         let (column_turns, row_turns) = turns(structure);
         let terms = terms(points, &layout, KernelId::Adjoint)?;
         Ok(LinearProblem::new(
@@ -210,6 +199,34 @@ impl<'m> Problem<'m> {
         values
     }
 
+    /// The rate at which the balances of slowest terms change their fields: Σ |coefficient| |k|^a (2/h)^d over
+    /// the mass, a median over the points.
+    pub fn rate(&self, k: f64) -> f64 {
+        let rates = (0..self.direct.layout.rows.len()).filter_map(|row| {
+            let sum = |time: bool| -> Vec<f64> {
+                let mut sums = vec![0.0; self.direct.layout.rows[row].len];
+                let own = self.direct.terms.iter().filter(|(r, ..)| *r == row);
+                for (_, jet, coefficients) in own.filter(|(_, jet, _)| (jet.t > 0) == time) {
+                    let size = k.abs().powi(i32::from(jet.x + jet.absx))
+                        * self.scale().powi(i32::from(jet.y));
+                    for (sum, c) in sums.iter_mut().zip(coefficients) {
+                        *sum += c.abs() * size;
+                    }
+                }
+                sums
+            };
+            let mut rates: Vec<f64> = sum(false)
+                .into_iter()
+                .zip(sum(true))
+                .map(|(terms, mass)| terms / mass)
+                .filter(|rate| rate.is_finite())
+                .collect();
+            rates.sort_by(f64::total_cmp);
+            rates.get(rates.len() / 2).copied()
+        });
+        rates.filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min)
+    }
+
     /// dξ/dy, or 1 without a cross-stream coordinate.
     pub fn scale(&self) -> f64 {
         if self.resolution == 0 {
@@ -230,21 +247,9 @@ pub fn quarter_turn(turns: usize) -> C64 {
     }
 }
 
-fn layout(
-    structure: &Structure,
-    counts: &[usize],
-    pairing: &[usize],
-    resolution: usize,
-) -> Result<Layout> {
-    let most = counts.iter().copied().max().unwrap_or(0);
-    if structure.coordinate.is_some() && resolution < most + 2 {
-        return Err(Error::input(format!(
-            "M = {resolution} is too small: at least {}",
-            most + 2
-        )));
-    }
+fn layout(structure: &Structure, offsets: &OffsetsInfo, resolution: usize) -> Result<Layout> {
     let resolution = structure.coordinate.is_some().then_some(resolution);
-    Ok(Layout::new(counts, pairing, resolution))
+    Layout::new(offsets, resolution)
 }
 
 /// Odd fields are i times real numbers, odd rows give i times real numbers.

@@ -16,9 +16,9 @@ pub use report::Formulas;
 pub use study::Study;
 
 use crate::error::{Error, Result};
+use crate::file::write_whole;
 use crate::library::Library;
 use crate::study::Setup;
-use crate::study::sweep::write_whole;
 use indicatif::ProgressBar;
 use std::fs;
 use std::path::{Path, PathBuf};

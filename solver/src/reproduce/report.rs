@@ -4,7 +4,7 @@ use super::Workshop;
 use super::errata::Judgement;
 use super::outcome::{Number, Outcome};
 use crate::error::{Error, Result};
-use crate::study::sweep::write_whole;
+use crate::file::write_whole;
 use landau_codegen::emit::text::Typeset;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use pulldown_latex::config::DisplayMode;

@@ -1,18 +1,45 @@
-//! How far a Landau point can be trusted: M against 3M/2, and one route against the other.
+//! How far a Landau point can be trusted.
+//!
+//! Differences that truncation, rounding and the base state's own error show themselves in: another M,
+//! M + 1 (which rounds differently), the base state at the next degree, the continuous adjoint; and what a
+//! relative change of the data by the machine's precision does.
 
+use super::Setup;
 use super::quadrature::{adjoint_mode, second_landau};
-use super::{Setup, distance};
 use crate::base::BaseState;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::problem::Problem;
 use crate::spectrum;
-use crate::weakly::{LandauPoint, Selection};
+use crate::weakly::{self, LandauPoint};
+
+/// A relative change of k, small enough for its effect to be linear, and large against rounding.
+const NUDGE: f64 = 1e-6;
+/// Rounding errors of the data that a result is allowed to be wrong by, in units of the machine's precision.
+const ROUNDINGS: f64 = 32.0;
+/// Safety factors of two differences that show rounding, which is as good as random.
+const SAFETY: f64 = 3.0;
 
 /// Absolute errors of c0 and c2.
 #[derive(Clone, Copy, Debug)]
 pub struct Accuracy {
     pub c0: f64,
     pub c2: f64,
+}
+
+impl Accuracy {
+    /// At least the difference of two computations, times a factor of safety.
+    fn widen(&mut self, factor: f64, point: &LandauPoint, (c0, c2): (C64, C64)) {
+        let wider = |error: f64, difference: f64| {
+            if difference.is_finite() {
+                error.max(factor * difference)
+            } else {
+                f64::INFINITY
+            }
+        };
+        self.c0 = wider(self.c0, (c0 - point.c0).norm());
+        self.c2 = wider(self.c2, (c2 - point.c2).norm());
+    }
 }
 
 /// Distances of the second-order problems from singularity.
@@ -24,30 +51,34 @@ pub struct Resonance {
     pub second_harmonic: f64,
 }
 
-/// Differences between resolutions and between routes; infinite where the finer problem has no
-/// answer.
+/// The errors of a Landau point; infinite where one of the computations beside it has no answer.
 ///
 /// # Errors
 /// A c2 by quadrature that cannot be formed.
 pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Accuracy> {
-    let mut found = Accuracy {
-        c0: 1e-15 * point.c0.norm(),
-        c2: 1e-14 * point.c2.norm(),
-    };
+    let [c0, c2] = point.rounding();
+    let mut found = Accuracy { c0, c2 };
     let k = point.expansion.k;
-    if setup.effective_resolution() > 0 {
-        let mut finer = setup.clone();
-        finer.resolution = setup.resolution + setup.resolution.div_ceil(2);
-        let near = Selection::Near(point.c0);
-        let (c0, c2) = finer
-            .with_point(base, k, near, |finer| Ok((finer.c0, finer.c2)))
-            .unwrap_or((C64::new(f64::INFINITY, 0.0), C64::new(f64::INFINITY, 0.0)));
-        found.c0 = found.c0.max((c0 - point.c0).norm());
-        found.c2 = found.c2.max((c2 - point.c2).norm());
-    }
     let problem = point.expansion.problem;
+    let missing = (C64::new(f64::INFINITY, 0.0), C64::new(f64::INFINITY, 0.0));
+    // |dc/dk| k ε, wherever c2 is sensitive, near a resonance too.
+    let nudged = spectrum::follow(problem, k * (1.0 + NUDGE), &point.expansion.pair)
+        .and_then(|pair| weakly::from_pair(problem, pair))
+        .map_or(missing, |p| (p.c0, p.c2));
+    found.widen(ROUNDINGS * f64::EPSILON / NUDGE, point, nudged);
+    let m = setup.effective_resolution();
+    if m > 0 {
+        let near = beside(setup, base, point, m + 1).unwrap_or(missing);
+        found.widen(SAFETY, point, near);
+        let finer = beside(setup, base, point, m + m.div_ceil(2)).unwrap_or(missing);
+        found.widen(1.0, point, finer);
+    }
+    if let Some(refined) = base.refined(setup.model) {
+        let same = beside(setup, &refined, point, m).unwrap_or(missing);
+        found.widen(SAFETY, point, same);
+    }
     // Without adjoint conditions, or where the adjoint mode hides in a cluster, one route remains.
-    if let Ok(adjoint) = adjoint_mode(problem, k, point.c0) {
+    if let Ok(adjoint) = adjoint_mode(problem, &point.expansion.pair) {
         found.c0 = found.c0.max((adjoint.c.conj() - point.c0).norm());
         if let Some(c2) = second_landau(point, &adjoint)? {
             found.c2 = found.c2.max((c2 - point.c2).norm());
@@ -56,20 +87,34 @@ pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<
     Ok(found)
 }
 
+/// c0 and c2 of the same mode on another collocation, or another base state.
+pub fn beside(
+    setup: &Setup,
+    base: &BaseState,
+    point: &LandauPoint,
+    resolution: usize,
+) -> Result<(C64, C64)> {
+    let other = Problem::new(setup.model, base, &setup.discretisation, resolution)?;
+    let pair = spectrum::transferred(point.expansion.problem, &point.expansion.pair, &other)?;
+    let point = weakly::from_pair(&other, pair)?;
+    Ok((point.c0, point.c2))
+}
+
 /// How near the second-order problems are to resonance.
 ///
 /// # Errors
 /// Spectra that cannot be computed.
 pub fn resonance(point: &LandauPoint) -> Result<Resonance> {
     let problem = point.expansion.problem;
-    let mean = spectrum::eigenvalues(problem, 0.0);
     let second = spectrum::eigenvalues(problem, 2.0 * point.expansion.k)?;
     // A model whose mean modes are all closed by integrals has no mean spectrum to meet.
-    let mean_flow = mean.map_or(f64::INFINITY, |mean| {
-        distance(C64::new(2.0 * point.c0.re, 0.0), &mean)
-    });
+    let mean_flow = match spectrum::eigenvalues(problem, 0.0) {
+        Ok(mean) => mean.distance(C64::new(2.0 * point.c0.re, 0.0)),
+        Err(Error::Computation(_)) => f64::INFINITY,
+        Err(error) => return Err(error),
+    };
     Ok(Resonance {
         mean_flow,
-        second_harmonic: distance(2.0 * point.c0, &second),
+        second_harmonic: second.distance(2.0 * point.c0),
     })
 }

@@ -1,10 +1,10 @@
-//! Critical points: where growth or c2 changes sign, where c2 jumps through infinity.
+//! Critical points along an axis: where growth or c2 changes sign, where c2 jumps through infinity.
 
 use super::root::brent;
-use super::sensitivity::wavenumber;
 use super::{Axis, Carried, Setup};
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::problem::Problem;
 use crate::spectrum::EigenPair;
 use crate::weakly::{self, Selection};
 use indicatif::ProgressBar;
@@ -13,10 +13,10 @@ use indicatif::ProgressBar;
 const SCAN: usize = 61;
 /// Every so many of them the whole spectrum is computed, to find the mode to follow.
 const STRIDE: usize = 6;
-/// Steps of a range of k in which the largest growth is looked for.
-const CREST_STEPS: usize = 16;
 /// Relative accuracy of roots.
-const TOLERANCE: f64 = 1e-12;
+pub(super) const TOLERANCE: f64 = 1e-12;
+/// A root that another M moves by a larger part of it is not converged.
+const UNRESOLVED: f64 = 1e-2;
 
 /// What changes sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,22 +43,24 @@ pub struct Question {
 #[derive(Clone, Debug)]
 pub struct Critical {
     pub value: f64,
+    /// Absolute error of the value: where another collocation puts it.
+    pub error: f64,
     pub k: f64,
     pub c0: C64,
 }
 
 /// One evaluation along the axis.
 #[derive(Clone)]
-struct Sample {
-    x: f64,
-    value: f64,
-    c0: C64,
-    carried: Carried,
+pub(super) struct Sample {
+    pub x: f64,
+    pub value: f64,
+    pub c0: C64,
+    pub carried: Carried,
 }
 
-struct Sampler<'s, 'm> {
-    setup: &'s Setup<'m>,
-    question: Question,
+pub(super) struct Sampler<'s, 'm> {
+    pub setup: &'s Setup<'m>,
+    pub question: Question,
 }
 
 impl Sampler<'_, '_> {
@@ -83,20 +85,7 @@ impl Sampler<'_, '_> {
         };
         let k = self.k(x);
         let (value, pair) = moved.with_problem(&base, |problem| {
-            let pair = weakly::select(problem, k, selection)?;
-            if self.question.quantity == Quantity::Growth {
-                return Ok((pair.c.re, pair));
-            }
-            let point = weakly::from_pair(problem, pair.clone())?;
-            let c2 = point.c2.re;
-            Ok((
-                if self.question.quantity == Quantity::C2 {
-                    c2
-                } else {
-                    1.0 / c2
-                },
-                pair,
-            ))
+            self.value(problem, weakly::select(problem, k, selection)?)
         })?;
         Ok(Sample {
             x,
@@ -170,11 +159,60 @@ impl Sampler<'_, '_> {
             return Ok(None);
         }
         let root = self.sample(x, Some(&near(x, a)))?;
+        let slope = (b.value - a.value) / (b.x - a.x);
+        let error = self.error(&root, slope)?.max(span);
         Ok(Some(Critical {
             value: x,
+            error,
             k: self.k(x),
             c0: root.c0,
         }))
+    }
+
+    /// How far another M, and the base state at another degree, move a root: their values there over the slope.
+    ///
+    /// # Errors
+    /// A root that they move by a good part of its value: it is not converged.
+    pub fn error(&self, root: &Sample, slope: f64) -> Result<f64> {
+        let moved = self.setup.moved(self.question.axis, root.x)?;
+        let m = moved.effective_resolution();
+        let base = &root.carried.base;
+        let refined = base.refined(moved.model);
+        let own = Problem::new(moved.model, base, &moved.discretisation, m)?;
+        let finer = (m > 0).then(|| (base, m + m.div_ceil(2)));
+        let others = finer
+            .into_iter()
+            .chain(refined.as_ref().map(|base| (base, m)));
+        let mut error = 0.0_f64;
+        for (base, m) in others {
+            let other = Problem::new(moved.model, base, &moved.discretisation, m)?;
+            let value = crate::spectrum::transferred(&own, &root.carried.pair, &other)
+                .and_then(|pair| self.value(&other, pair))
+                .map_or(f64::INFINITY, |(value, _)| value);
+            error = error.max(((value - root.value) / slope).abs());
+        }
+        if error > UNRESOLVED * root.x.abs() {
+            return Err(Error::computation(format!(
+                "the critical point near {} is not converged at M = {m}: another M moves it by {error:.1e}; try a \
+                 larger M, such as -M {}",
+                root.x,
+                2 * m
+            )));
+        }
+        Ok(error)
+    }
+
+    /// The quantity that changes sign, of a mode.
+    fn value(&self, problem: &Problem, pair: EigenPair) -> Result<(f64, EigenPair)> {
+        if self.question.quantity == Quantity::Growth {
+            return Ok((pair.c.re, pair));
+        }
+        let c2 = weakly::from_pair(problem, pair.clone())?.c2.re;
+        let value = match self.question.quantity {
+            Quantity::Resonance => 1.0 / c2,
+            _ => c2,
+        };
+        Ok((value, pair))
     }
 }
 
@@ -213,137 +251,4 @@ pub fn critical(
         "{what} between {} and {}: {:.4e} at {:.6}, {:.4e} at {:.6}; try another interval, or --near to name a mode",
         question.from, question.to, first.value, first.x, last.value, last.x
     )))
-}
-
-/// The extremum over k of the neutral curve: growth = 0 and dc0/dk = 0 (real parts) together.
-///
-/// # Errors
-/// As [`critical`].
-pub fn minimise(
-    setup: &Setup,
-    question: Question,
-    (from, to): (f64, f64),
-    progress: &ProgressBar,
-) -> Result<Critical> {
-    let steps = 12;
-    progress.set_length(steps as u64 + 1);
-    let peak = |x: f64, carried: &mut Option<Carried>| -> Result<(f64, EigenPair)> {
-        let moved = setup.moved(question.axis, x)?;
-        let base = moved.base(carried.as_ref().map(|c| &c.base))?;
-        let near = carried.as_ref().map(|c| c.pair.clone());
-        let pair = moved.with_problem(&base, |problem| {
-            crest(problem, near.as_ref(), question.near, (from, to))
-        })?;
-        *carried = Some(Carried {
-            base,
-            pair: pair.clone(),
-        });
-        Ok((pair.c.re, pair))
-    };
-    let edge = |x: f64| -> Result<f64> {
-        let moved = setup.moved(question.axis, x)?;
-        let base = moved.base(None)?;
-        moved.with_problem(&base, |problem| {
-            highest(problem, question.near, (from, to)).map(|pair| pair.c.re)
-        })
-    };
-    let mut previous: Option<(f64, f64, Option<Carried>)> = None;
-    for step in 0..=steps {
-        progress.inc(1);
-        let x = question.from + (question.to - question.from) * step as f64 / steps as f64;
-        // Each scan point looks over the whole range of k, in case another mode takes over.
-        let mut fresh = None;
-        let growth = match peak(x, &mut fresh) {
-            Ok((growth, _)) => growth,
-            // Largest at an end of the range: enough to say that nothing grows here.
-            Err(_) => match edge(x) {
-                Ok(growth) if growth < 0.0 => growth,
-                _ => continue,
-            },
-        };
-        if let Some((x0, g0, before)) = &previous
-            && g0 * growth <= 0.0
-        {
-            // The mode that grows on one side is the one that is followed to zero.
-            let mut carried = if growth > 0.0 { fresh } else { before.clone() };
-            let span = TOLERANCE * x.abs().max(x0.abs());
-            let (root, _) = brent(
-                |x| peak(x, &mut carried).map(|(g, _)| g),
-                (*x0, *g0),
-                (x, growth),
-                span,
-            )?;
-            let (_, pair) = peak(root, &mut carried)?;
-            progress.finish_and_clear();
-            return Ok(Critical {
-                value: root,
-                k: pair.k,
-                c0: pair.c,
-            });
-        }
-        previous = Some((x, growth, fresh));
-    }
-    Err(Error::computation(format!(
-        "the largest growth rate over k in {from}..{to} does not change sign between {} and {}; try wider intervals",
-        question.from, question.to
-    )))
-}
-
-/// The mode of largest growth among evenly spaced k.
-fn highest(
-    problem: &crate::problem::Problem,
-    target: Option<C64>,
-    (from, to): (f64, f64),
-) -> Result<EigenPair> {
-    let selection = target.map_or(Selection::Leading, Selection::Near);
-    let places = (0..=CREST_STEPS).map(|i| from + (to - from) * i as f64 / CREST_STEPS as f64);
-    let modes = places.filter_map(|k| weakly::select(problem, k, selection).ok());
-    modes
-        .max_by(|a, b| a.c.re.total_cmp(&b.c.re))
-        .ok_or_else(|| Error::computation("no mode was found in the range of k"))
-}
-
-/// The mode of largest growth over k: scanned where nothing is known, then dc0/dk = 0.
-fn crest(
-    problem: &crate::problem::Problem,
-    near: Option<&EigenPair>,
-    target: Option<C64>,
-    (from, to): (f64, f64),
-) -> Result<EigenPair> {
-    let spacing = (to - from) / CREST_STEPS as f64;
-    let start = match near {
-        Some(pair) => pair.clone(),
-        None => highest(problem, target, (from, to))?,
-    };
-    let mut pair = crate::spectrum::follow(problem, start.k, &start)?;
-    let mut slope = |k: f64| -> Result<f64> {
-        pair = crate::spectrum::follow(problem, k, &pair)?;
-        Ok(wavenumber(problem, &pair).re)
-    };
-    // Bracket the extremum around the start.
-    let first = slope(start.k)?;
-    let mut reach = if near.is_some() {
-        1e-3 * start.k
-    } else {
-        spacing
-    };
-    let side = first.signum();
-    let (mut a, mut fa) = (start.k, first);
-    for _ in 0..60 {
-        let b = (a + side * reach).clamp(from, to);
-        if b == a {
-            let message =
-                format!("the growth rate has its largest value at the end k = {a} of the range");
-            return Err(Error::computation(message));
-        }
-        let fb = slope(b)?;
-        if fa * fb <= 0.0 {
-            let (k, _) = brent(&mut slope, (a, fa), (b, fb), 1e-12 * b)?;
-            slope(k)?;
-            return Ok(pair);
-        }
-        (a, fa) = (b, fb);
-        reach *= 1.5;
-    }
-    Err(Error::computation("the extremum over k was not bracketed"))
 }

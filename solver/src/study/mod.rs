@@ -2,16 +2,21 @@
 
 pub mod accuracy;
 pub mod critical;
+mod journal;
+pub use journal::journal_path;
+pub mod minimise;
+pub mod point;
 pub mod quadrature;
 mod root;
 pub mod sensitivity;
+pub mod spectrum;
 pub mod sweep;
 pub mod verify;
 
 use crate::base::{self, BaseState};
 use crate::collocation::Discretisation;
 use crate::error::{Error, Result};
-use crate::model::{C64, Model};
+use crate::model::Model;
 use crate::parameters::Parameters;
 use crate::problem::Problem;
 use crate::spectrum::EigenPair;
@@ -88,10 +93,7 @@ impl<'m> Setup<'m> {
     pub fn hash(&self) -> String {
         let sources = self.model.sources();
         let text = sources.iter().flat_map(|(_, text)| text.bytes());
-        // FNV-1a, enough to tell one spec from another.
-        let hash = text.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-        });
+        let hash = crate::file::hash(text);
         format!("{hash:016x}")
     }
 
@@ -177,12 +179,4 @@ pub fn check_wavenumber(k: f64) -> Result<()> {
     Err(Error::input(format!(
         "k = {k} is not a wavenumber: it has to be a positive number"
     )))
-}
-
-/// Smallest distance between a number and the members of a spectrum.
-pub fn distance(target: C64, spectrum: &[C64]) -> f64 {
-    spectrum
-        .iter()
-        .map(|c| (c - target).norm())
-        .fold(f64::INFINITY, f64::min)
 }

@@ -7,6 +7,7 @@ use crate::dense::{Factorised, apply, dot, norm};
 use crate::error::{Error, Result};
 use crate::model::{C64, Jet, KernelId, evaluate};
 use crate::problem::{LinearProblem, Problem, quarter_turn};
+use crate::spectrum::{EigenPair, beside};
 use crate::weakly::{LandauPoint, Mode, quadrature_grid, quadrature_weights};
 
 /// The adjoint eigenfunction X† and its eigenvalue.
@@ -20,9 +21,10 @@ pub struct AdjointMode {
 ///
 /// # Errors
 /// A model without adjoint boundary conditions, or an iteration that does not converge.
-pub fn adjoint_mode(problem: &Problem, k: f64, c0: C64) -> Result<AdjointMode> {
+pub fn adjoint_mode(problem: &Problem, pair: &EigenPair) -> Result<AdjointMode> {
     let adjoint = problem.adjoint()?;
-    let shift = c0.conj() + C64::new(1e-7 * c0.norm().max(1e-3), 0.0);
+    let k = pair.k;
+    let shift = beside(pair.c.conj(), pair.scale);
     let (operator, mass) = problem.pencil_of::<C64>(adjoint, k);
     let n = mass.nrows();
     let shifted = faer::Mat::from_fn(n, n, |i, j| shift * mass[(i, j)] - operator[(i, j)]);
@@ -45,7 +47,8 @@ pub fn adjoint_mode(problem: &Problem, k: f64, c0: C64) -> Result<AdjointMode> {
         let step = (estimate - c).norm();
         c = estimate;
         let floor = 1e-13 * c.norm().max((shift - c).norm());
-        if iteration > 1 && (step <= floor || (step < 1e-9 * c.norm() && step >= 0.5 * change)) {
+        let small = 1e-9 * c.norm().max(1e-6 * pair.scale);
+        if iteration > 1 && (step <= floor || (step < small && step >= 0.5 * change)) {
             return Ok(AdjointMode {
                 c,
                 values: physical(adjoint, &x),
@@ -54,7 +57,7 @@ pub fn adjoint_mode(problem: &Problem, k: f64, c0: C64) -> Result<AdjointMode> {
         change = step;
     }
     Err(Error::computation(format!(
-        "the adjoint mode at k = {k} was not found; try a larger M"
+        "the adjoint mode at k = {k} was not found: L† has no isolated eigenvalue near the conjugate of c0 at this M"
     )))
 }
 

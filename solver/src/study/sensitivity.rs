@@ -14,15 +14,15 @@ const STEP: f64 = 1e-3;
 
 /// dc0/dp for every parameter that is a number and not determined by the base.
 ///
-/// The operators' derivative is a fourth-order difference; modes are not differenced.
-/// `None` where a base state next to the given one cannot be found.
-pub fn parameters(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Vec<(usize, Option<C64>)> {
+/// The operators' derivative is a fourth-order difference; modes are not differenced. A parameter that L, its
+/// conditions and the base state do not hold gives zero exactly.
+pub fn parameters(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Vec<(usize, Result<C64>)> {
     let structure = setup.model.structure();
     let free: Vec<usize> = (0..structure.parameters.len())
         .filter(|&i| structure.parameters[i].choices.is_empty() && !setup.parameters.automatic[i])
         .collect();
     free.into_par_iter()
-        .map(|index| (index, one(setup, base, pair, index).ok()))
+        .map(|index| (index, one(setup, base, pair, index)))
         .collect()
 }
 
@@ -37,6 +37,12 @@ fn one(setup: &Setup, base: &BaseState, pair: &EigenPair, index: usize) -> Resul
         let state = moved.base(Some(base))?;
         quotient_at(&moved, &state, pair)
     };
+    // A base state that is solved for anew differs by rounding where the parameter does nothing.
+    let floor = 1e-13 * pair.c.norm().max(pair.scale) / step;
+    let settled = |slope: C64| {
+        let part = |x: f64| if x.abs() <= floor { 0.0 } else { x };
+        C64::new(part(slope.re), part(slope.im))
+    };
     // Inside the range if need be: one-sided where a bound is near.
     let room = |side: f64| {
         let reach = value + side * 2.0 * step;
@@ -46,16 +52,18 @@ fn one(setup: &Setup, base: &BaseState, pair: &EigenPair, index: usize) -> Resul
         // (f(−2h) − 8 f(−h) + 8 f(h) − f(2h)) / 12h
         let (a, b) = (shifted(-2.0)?, shifted(-1.0)?);
         let (c, d) = (shifted(1.0)?, shifted(2.0)?);
-        return Ok((a - 8.0 * b + 8.0 * c - d) / (12.0 * step));
+        return Ok(settled(((a - d) + 8.0 * (c - b)) / (12.0 * step)));
     }
     let side = if room(1.0) { 1.0 } else { -1.0 };
     // (−25 f0 + 48 f1 − 36 f2 + 16 f3 − 3 f4) / 12h
+    // The weights sum to zero, so that differences from f0 do.
     let weights = [-25.0, 48.0, -36.0, 16.0, -3.0];
+    let first = shifted(0.0)?;
     let mut total = C64::new(0.0, 0.0);
-    for (i, weight) in weights.iter().enumerate() {
-        total += *weight * shifted(side * 0.5 * i as f64)?;
+    for (i, weight) in weights.iter().enumerate().skip(1) {
+        total += *weight * (shifted(side * 0.5 * i as f64)? - first);
     }
-    Ok(total / (12.0 * 0.5 * step * side))
+    Ok(settled(total / (12.0 * 0.5 * step * side)))
 }
 
 /// ⟨Y, L X⟩ / ⟨Y, M0 X⟩ with the vectors of another state: stationary at the mode itself.

@@ -4,24 +4,39 @@
 //! two ends (the more unstable one leads) and follows it by shape, so a row does not depend on how
 //! many threads there are, or on where an earlier run was interrupted.
 
+use super::journal::Journal;
+use super::point::UNCONVERGED;
 use super::{Axis, Carried, Setup};
 use crate::error::{Error, Result};
-use crate::figure::bulk;
+use crate::file::destination;
 use crate::model::C64;
 use crate::problem::Problem;
-use crate::spectrum::EigenPair;
-use crate::weakly::{self, Selection};
+use crate::spectrum::{self, EigenPair};
+use crate::weakly::{self, Bifurcation, LandauPoint, Selection, equilibrium};
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::collections::HashMap;
-use std::fs::{self, File, OpenOptions};
-use std::io::{BufRead, BufReader, Write};
-use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Points of the first axis that one worker follows.
 const CHUNK: usize = 40;
+/// A second-order problem nearer to singularity than this, relative to the slow rates, makes a row no `ok`.
+const RESONANT: f64 = 1e-3;
+/// Columns after the axes.
+const COLUMNS: [&str; 11] = [
+    "c0_re",
+    "c0_im",
+    "c0_error",
+    "c2_re",
+    "c2_im",
+    "c2_error",
+    "amplitude",
+    "bifurcation",
+    "mean_flow",
+    "second_harmonic",
+    "status",
+];
 
 /// Evenly spaced values along one axis.
 #[derive(Clone, Debug)]
@@ -31,15 +46,21 @@ pub struct Range {
     pub values: Vec<f64>,
 }
 
-/// One row of the table.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+/// One row of the table; what has no answer is missing, and `status` says why.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Row {
     pub coordinates: Vec<f64>,
     pub c0: Option<[f64; 2]>,
+    /// Absolute error of c0, from a coarser collocation.
+    pub c0_error: Option<f64>,
     pub c2: Option<[f64; 2]>,
+    pub c2_error: Option<f64>,
     pub amplitude: Option<f64>,
     pub bifurcation: String,
-    /// `ok`, or why there is no number.
+    /// Distances of the problems for X[0;2] and X[2;2] from singularity.
+    pub mean_flow: Option<f64>,
+    pub second_harmonic: Option<f64>,
+    /// `ok`, or why there is no number, or what is near.
     pub status: String,
 }
 
@@ -53,27 +74,15 @@ pub enum Column {
     Amplitude,
 }
 
-/// One column over the first axis; NaN where there is no value, or at the pole of a column with poles.
+/// One column over the first axis; NaN where there is no value.
 pub fn column(rows: &[Row], column: Column) -> Vec<(f64, f64)> {
     let value = |row: &Row| match column {
         Column::A0 => row.c0.map(|c| c[0]),
         Column::A2 => row.c2.map(|c| c[0]),
         Column::Amplitude => row.amplitude.filter(|_| row.c0.is_some_and(|c| c[0] > 0.0)),
     };
-    let values: Vec<f64> = rows.iter().map(|r| value(r).unwrap_or(f64::NAN)).collect();
-    let most = match column {
-        Column::A0 => f64::INFINITY,
-        _ => bulk(values.iter().copied()),
-    };
-    let kept = |v: f64| if v.abs() <= most { v } else { f64::NAN };
-    let places = rows.iter().map(|r| r.coordinates[0]);
-    places.zip(values.into_iter().map(kept)).collect()
-}
-
-#[derive(Serialize, Deserialize)]
-struct Finished {
-    chunk: usize,
-    rows: Vec<Row>,
+    let point = |row: &Row| (row.coordinates[0], value(row).unwrap_or(f64::NAN));
+    rows.iter().map(point).collect()
 }
 
 /// A sweep over the product of its ranges, the first varying fastest.
@@ -83,6 +92,15 @@ pub struct Sweep<'s, 'm> {
     pub near: Option<C64>,
     /// The wavenumber, where no range varies it.
     pub k: Option<f64>,
+}
+
+/// What a run of a sweep found beside its output.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Resumed {
+    /// Rows taken from an interrupted run.
+    pub taken: usize,
+    /// Lines of its journal that did not fit.
+    pub damaged: usize,
 }
 
 impl Sweep<'_, '_> {
@@ -106,27 +124,76 @@ impl Sweep<'_, '_> {
 
     /// Computes every row.
     pub fn run(&self, progress: &ProgressBar) -> Vec<Row> {
-        self.run_chunks(&HashMap::new(), progress, &|_, _| {})
+        self.run_chunks(&BTreeMap::new(), progress, &|_, _| {})
+    }
+
+    /// Whether a file holds a table of this sweep's columns and places.
+    fn is_own(&self, path: &Path) -> bool {
+        let Ok(mut reader) = csv::Reader::from_path(path) else {
+            return false;
+        };
+        if reader.headers().is_ok_and(|h| h.iter().ne(self.header())) {
+            return false;
+        }
+        let places = (0..self.chunk_count()).flat_map(|chunk| self.places(chunk));
+        let expected = places.map(|place| place.iter().map(f64::to_string).collect::<Vec<_>>());
+        let axes = self.ranges.len();
+        let found = reader.records().map(|record| match record {
+            Ok(record) => record.iter().take(axes).map(str::to_owned).collect(),
+            Err(_) => Vec::new(),
+        });
+        found.eq(expected)
+    }
+
+    /// Refuses an output that is somebody else's file.
+    ///
+    /// # Errors
+    /// A file that is no table of this sweep, a folder, a device.
+    pub fn check_output(&self, out: &Path) -> Result<()> {
+        let target = destination(out)?;
+        if target.exists() && !self.is_own(&target) {
+            return Err(Error::input(format!(
+                "{} exists and is no table of this sweep: remove it, choose another --out, or give --force",
+                out.display()
+            )));
+        }
+        Ok(())
     }
 
     /// Computes the rows into a CSV file, whole or not at all; an interrupted run leaves a journal
-    /// beside it, from which the next one goes on.
+    /// beside it, from which the next one goes on. `resumed` is told what it found there.
     ///
     /// # Errors
-    /// Files that cannot be written.
-    pub fn run_to(&self, out: &Path, progress: &ProgressBar) -> Result<Vec<Row>> {
-        let journal = Journal::open(out, &self.fingerprint())?;
+    /// Files that cannot be written, another run with the same output.
+    pub fn run_to(
+        &self,
+        out: &Path,
+        progress: &ProgressBar,
+        resumed: impl FnOnce(Resumed),
+    ) -> Result<Vec<Row>> {
+        let target = destination(out)?;
+        let journal = Journal::open(&target, self.fingerprint(), |chunk, rows| {
+            chunk < self.chunk_count()
+                && rows
+                    .iter()
+                    .map(|r| &r.coordinates)
+                    .eq(self.places(chunk).iter())
+        })?;
+        resumed(Resumed {
+            taken: journal.known.values().map(Vec::len).sum(),
+            damaged: journal.damaged,
+        });
         let rows = self.run_chunks(&journal.known, progress, &|chunk, rows| {
             journal.record(chunk, rows)
         });
-        write_whole(out, &self.csv(&rows)?)?;
+        crate::file::write_whole(&target, &self.csv(&rows)?)?;
         journal.remove();
         Ok(rows)
     }
 
     fn run_chunks(
         &self,
-        known: &HashMap<usize, Vec<Row>>,
+        known: &BTreeMap<usize, Vec<Row>>,
         progress: &ProgressBar,
         record: &(dyn Fn(usize, &[Row]) + Sync),
     ) -> Vec<Row> {
@@ -147,7 +214,8 @@ impl Sweep<'_, '_> {
         chunks.into_iter().flatten().collect()
     }
 
-    fn chunk(&self, chunk: usize, progress: &ProgressBar) -> Vec<Row> {
+    /// The places of a chunk.
+    fn places(&self, chunk: usize) -> Vec<Vec<f64>> {
         let per_line = self.chunks_per_line();
         let mut line = chunk / per_line;
         let first = (chunk % per_line) * CHUNK;
@@ -158,12 +226,14 @@ impl Sweep<'_, '_> {
             others.push(range.values[line % range.values.len()]);
             line /= range.values.len();
         }
-        let coordinates = |x: f64| {
-            std::iter::once(x)
-                .chain(others.iter().copied())
-                .collect::<Vec<f64>>()
-        };
-        let places: Vec<Vec<f64>> = points.iter().map(|&x| coordinates(x)).collect();
+        points
+            .iter()
+            .map(|&x| std::iter::once(x).chain(others.iter().copied()).collect())
+            .collect()
+    }
+
+    fn chunk(&self, chunk: usize, progress: &ProgressBar) -> Vec<Row> {
+        let places = self.places(chunk);
         if self.ranges[0].axis != Axis::Wavenumber {
             let step = |place: &[f64], near: Option<&Carried>| self.evaluate(place, near);
             return follow(
@@ -176,17 +246,15 @@ impl Sweep<'_, '_> {
         // One base state and one set of coefficients serve the whole line.
         let line = self.at(&places[0]).and_then(|(setup, _)| {
             let base = setup.base(None)?;
-            setup.with_problem(&base, |problem| {
-                let step = |place: &[f64], near: Option<&EigenPair>| {
-                    self.row(problem, place, place[0], near)
-                };
-                Ok(follow(
-                    &places,
-                    |pair: &EigenPair| pair.c.re,
-                    step,
-                    progress,
-                ))
-            })
+            let pairs = Collocations::new(&setup, &base)?;
+            let step =
+                |place: &[f64], near: Option<&EigenPair>| self.row(&pairs, place, place[0], near);
+            Ok(follow(
+                &places,
+                |pair: &EigenPair| pair.c.re,
+                step,
+                progress,
+            ))
         });
         line.unwrap_or_else(|error| {
             progress.inc(places.len() as u64);
@@ -214,15 +282,18 @@ impl Sweep<'_, '_> {
     fn evaluate(&self, place: &[f64], near: Option<&Carried>) -> Result<(Row, Carried)> {
         let (setup, k) = self.at(place)?;
         let base = setup.base(near.map(|c| &c.base))?;
-        let (row, pair) = setup.with_problem(&base, |problem| {
-            self.row(problem, place, k, near.map(|c| &c.pair))
-        })?;
+        let (row, pair) = self.row(
+            &Collocations::new(&setup, &base)?,
+            place,
+            k,
+            near.map(|c| &c.pair),
+        )?;
         Ok((row, Carried { base, pair }))
     }
 
     fn row(
         &self,
-        problem: &Problem,
+        collocations: &Collocations,
         place: &[f64],
         k: f64,
         near: Option<&EigenPair>,
@@ -232,16 +303,21 @@ impl Sweep<'_, '_> {
             (None, Some(target)) => Selection::Near(target),
             (None, None) => Selection::Leading,
         };
-        let point = weakly::point(problem, k, selection)?;
-        let row = Row {
-            coordinates: place.to_vec(),
-            c0: Some([point.c0.re, point.c0.im]),
-            c2: Some([point.c2.re, point.c2.im]),
-            amplitude: point.amplitude(),
-            bifurcation: point.bifurcation(),
-            status: "ok".into(),
+        let pair = weakly::select(&collocations.own, k, selection)?;
+        // Where c2 has no answer, the mode is still there to be followed.
+        let row = match weakly::from_pair(&collocations.own, pair.clone()) {
+            Ok(point) => row(collocations, place, &point)?,
+            Err(error) => Row {
+                c0: Some([pair.c.re, pair.c.im]),
+                ..failed(place.to_vec(), &error)
+            },
         };
-        Ok((row, point.expansion.pair))
+        Ok((row, pair))
+    }
+
+    fn header(&self) -> impl Iterator<Item = &str> {
+        let axes = self.ranges.iter().map(|r| r.name.as_str());
+        axes.chain(COLUMNS)
     }
 
     /// The table as CSV.
@@ -250,28 +326,21 @@ impl Sweep<'_, '_> {
     /// Rows that do not serialise.
     pub fn csv(&self, rows: &[Row]) -> Result<Vec<u8>> {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let mut header: Vec<&str> = self.ranges.iter().map(|r| r.name.as_str()).collect();
-        header.extend([
-            "c0_re",
-            "c0_im",
-            "c2_re",
-            "c2_im",
-            "amplitude",
-            "bifurcation",
-            "status",
-        ]);
         let failure =
             |e: csv::Error| Error::computation(format!("the table cannot be written: {e}"));
-        writer.write_record(&header).map_err(failure)?;
+        writer.write_record(self.header()).map_err(failure)?;
         let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
         for row in rows {
             let mut record: Vec<String> = row.coordinates.iter().map(f64::to_string).collect();
-            for pair in [row.c0, row.c2] {
+            for (pair, error) in [(row.c0, row.c0_error), (row.c2, row.c2_error)] {
                 record.push(number(pair.map(|p| p[0])));
                 record.push(number(pair.map(|p| p[1])));
+                record.push(number(error));
             }
             record.push(number(row.amplitude));
             record.push(row.bifurcation.clone());
+            record.push(number(row.mean_flow));
+            record.push(number(row.second_harmonic));
             record.push(row.status.clone());
             writer.write_record(&record).map_err(failure)?;
         }
@@ -296,6 +365,84 @@ impl Sweep<'_, '_> {
             self.setup.hash()
         )
     }
+}
+
+/// The problem at M, and a coarser one beside which its errors show.
+struct Collocations<'m> {
+    own: Problem<'m>,
+    coarser: Option<Problem<'m>>,
+}
+
+impl<'m> Collocations<'m> {
+    fn new(setup: &'m Setup, base: &'m crate::base::BaseState) -> Result<Self> {
+        let m = setup.effective_resolution();
+        let problem = |m| Problem::new(setup.model, base, &setup.discretisation, m);
+        Ok(Collocations {
+            own: problem(m)?,
+            coarser: (m > 0).then(|| problem(m - m.div_ceil(6))).transpose()?,
+        })
+    }
+
+    /// Absolute errors of c0 and c2.
+    fn errors(&self, point: &LandauPoint) -> [f64; 2] {
+        let floor = point.rounding();
+        let Some(coarser) = &self.coarser else {
+            return floor;
+        };
+        let beside = spectrum::transferred(&self.own, &point.expansion.pair, coarser)
+            .and_then(|pair| weakly::from_pair(coarser, pair));
+        match beside {
+            Ok(other) => [
+                floor[0].max((other.c0 - point.c0).norm()),
+                floor[1].max((other.c2 - point.c2).norm()),
+            ],
+            Err(_) => [f64::INFINITY; 2],
+        }
+    }
+}
+
+/// The row of a point with its errors and distances.
+fn row(collocations: &Collocations, place: &[f64], point: &LandauPoint) -> Result<Row> {
+    let [error0, error2] = collocations.errors(point);
+    let scale = point.expansion.pair.scale.max(point.c0.norm());
+    let distance = |key| point.expansion.distance(key).filter(|d| d.is_finite());
+    let (mean_flow, second_harmonic) = (distance((0, 2)), distance((2, 2)));
+    let judged = |c: C64, error: f64, sum: f64| error <= (UNCONVERGED * c.norm()).max(1e-6 * sum);
+    let (good0, good2) = (
+        judged(point.c0, error0, scale),
+        judged(point.c2, error2, point.size()),
+    );
+    let near = |d: Option<f64>| d.is_some_and(|d| d <= RESONANT * scale);
+    let status = if !good0 {
+        "c0 is not converged: a larger M".to_owned()
+    } else if !good2 {
+        "c2 is not converged: a larger M".to_owned()
+    } else if near(second_harmonic) {
+        "near a 2:1 resonance".to_owned()
+    } else if near(mean_flow) {
+        "near a mean-flow resonance".to_owned()
+    } else {
+        "ok".to_owned()
+    };
+    let pair = |c: C64| [c.re, c.im];
+    let finite = |error: f64| Some(error).filter(|e| e.is_finite());
+    let known = good0 && good2;
+    let (c0, c2) = ((point.c0, error0), (point.c2, error2));
+    Ok(Row {
+        coordinates: place.to_vec(),
+        c0: good0.then(|| pair(point.c0)),
+        c0_error: finite(error0),
+        c2: known.then(|| pair(point.c2)),
+        c2_error: finite(error2),
+        amplitude: equilibrium(c0, c2).filter(|_| known),
+        bifurcation: match known {
+            true => Bifurcation::new(c0, c2).to_string(),
+            false => String::new(),
+        },
+        mean_flow,
+        second_harmonic,
+        status,
+    })
 }
 
 /// Rows of a chunk: the mode of the more unstable end, followed to the other.
@@ -337,92 +484,7 @@ fn follow<C>(
 fn failed(coordinates: Vec<f64>, error: &Error) -> Row {
     Row {
         coordinates,
-        c0: None,
-        c2: None,
-        amplitude: None,
-        bifurcation: String::new(),
         status: error.to_string(),
+        ..Row::default()
     }
-}
-
-/// Finished chunks beside the output, one JSON object a line.
-struct Journal {
-    path: PathBuf,
-    file: Mutex<File>,
-    known: HashMap<usize, Vec<Row>>,
-}
-
-impl Journal {
-    fn open(out: &Path, fingerprint: &str) -> Result<Self> {
-        let mut name = out.file_name().unwrap_or_default().to_os_string();
-        name.push(".journal");
-        let path = out.with_file_name(name);
-        let failure =
-            |e: std::io::Error| Error::input(format!("{} cannot be written: {e}", path.display()));
-        let mut known = HashMap::new();
-        let header = serde_json::to_string(fingerprint).unwrap_or_default();
-        let mut valid = false;
-        if let Ok(file) = File::open(&path) {
-            let mut lines = BufReader::new(file)
-                .lines()
-                .map_while(std::result::Result::ok);
-            valid = lines.next().as_deref() == Some(&header);
-            if valid {
-                // A line cut off by an interruption does not parse, and is computed again.
-                known = lines
-                    .filter_map(|line| serde_json::from_str::<Finished>(&line).ok())
-                    .map(|finished| (finished.chunk, finished.rows))
-                    .collect();
-            }
-        }
-        let mut options = OpenOptions::new();
-        let mut file = if valid {
-            options.append(true).open(&path).map_err(failure)?
-        } else {
-            options
-                .write(true)
-                .create(true)
-                .truncate(true)
-                .open(&path)
-                .map_err(failure)?
-        };
-        if valid {
-            writeln!(file).map_err(failure)?;
-        } else {
-            writeln!(file, "{header}").map_err(failure)?;
-        }
-        Ok(Journal {
-            path,
-            file: Mutex::new(file),
-            known,
-        })
-    }
-
-    fn record(&self, chunk: usize, rows: &[Row]) {
-        let finished = Finished {
-            chunk,
-            rows: rows.to_vec(),
-        };
-        if let (Ok(line), Ok(mut file)) = (serde_json::to_string(&finished), self.file.lock()) {
-            // A journal that cannot be written costs the resumption, not the result.
-            let _ = writeln!(file, "{line}").and_then(|()| file.flush());
-        }
-    }
-
-    fn remove(&self) {
-        let _ = fs::remove_file(&self.path);
-    }
-}
-
-/// Writes a file whole or not at all.
-///
-/// # Errors
-/// Folders that do not exist, permissions.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(".part");
-    let part = path.with_file_name(name);
-    fs::write(&part, bytes)
-        .and_then(|()| fs::rename(&part, path))
-        .map_err(|e| Error::input(format!("{} cannot be written: {e}", path.display())))
 }

@@ -11,23 +11,58 @@ use crate::base::BaseState;
 use crate::collocation::coefficients;
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::study::point::SINGULAR;
 use crate::weakly::{LandauPoint, Selection};
-use serde::Serialize;
+use crate::words;
+use serde_json::{Value, json};
+use std::fmt;
 
 pub use adjointness::duality;
 pub use forms::second_route;
-pub use order::{defects, floor, slope};
+pub use order::{ResidualOrder, residual_order};
+
+/// What became of a check.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    Passed,
+    Failed,
+    /// A value to know, not judged.
+    Reported,
+    /// Not made, and why.
+    LeftOut(String),
+}
+
+impl Verdict {
+    fn by(passed: bool) -> Self {
+        if passed {
+            Verdict::Passed
+        } else {
+            Verdict::Failed
+        }
+    }
+
+    /// The word for it.
+    pub fn word(&self) -> &'static str {
+        match self {
+            Verdict::Passed => "passed",
+            Verdict::Failed => "failed",
+            Verdict::Reported => "reported",
+            Verdict::LeftOut(_) => "left out",
+        }
+    }
+}
 
 /// One line of the certificate.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Check {
     /// Part 1 to 5.
     pub part: usize,
     pub name: String,
+    /// NaN where the check was left out.
     pub value: f64,
     /// What the value has to stay below (or, for a slope, reach).
     pub bound: f64,
-    pub passed: bool,
+    pub verdict: Verdict,
     pub detail: String,
 }
 
@@ -39,67 +74,187 @@ impl Check {
         bound: f64,
         detail: impl Into<String>,
     ) -> Self {
-        let passed = value.is_finite() && value <= bound;
         Check {
             part,
             name: name.into(),
             value,
             bound,
-            passed,
+            verdict: Verdict::by(value.is_finite() && value <= bound),
             detail: detail.into(),
         }
     }
 
-    /// Reported, not judged.
+    /// Reported, not judged; what is no number failed all the same.
     fn report(part: usize, name: impl Into<String>, value: f64, detail: impl Into<String>) -> Self {
-        let passed = value.is_finite();
+        let verdict = match value.is_finite() {
+            true => Verdict::Reported,
+            false => Verdict::Failed,
+        };
         Check {
             part,
             name: name.into(),
             value,
             bound: f64::INFINITY,
-            passed,
+            verdict,
             detail: detail.into(),
         }
     }
+
+    fn left_out(part: usize, name: impl Into<String>, reason: impl Into<String>) -> Self {
+        Check {
+            part,
+            name: name.into(),
+            value: f64::NAN,
+            bound: f64::NAN,
+            verdict: Verdict::LeftOut(reason.into()),
+            detail: String::new(),
+        }
+    }
+
+    fn json(&self) -> Value {
+        let reason = match &self.verdict {
+            Verdict::LeftOut(reason) => Some(reason),
+            _ => None,
+        };
+        json!({
+            "part": self.part,
+            "name": self.name,
+            "value": words::number(self.value),
+            "bound": words::number(self.bound),
+            "verdict": self.verdict.word(),
+            "reason": reason,
+            "detail": self.detail,
+        })
+    }
 }
 
-/// All five parts at one wavenumber.
-///
-/// # Errors
-/// A point that cannot be computed at all.
-pub fn verify(setup: &Setup, k: f64, selection: Selection) -> Result<Vec<Check>> {
-    check_wavenumber(k)?;
-    let base = setup.base(None)?;
-    let mut checks = Vec::new();
-    setup.with_point(&base, k, selection, |point| {
-        checks.extend(order::check(point)?);
-        checks.extend(adjointness::check(setup, &base, point)?);
-        checks.extend(routes(point)?);
-        checks.extend(forms::check(point.expansion.problem)?);
-        checks.extend(convergence(setup, &base, point)?);
+impl fmt::Display for Check {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mark = match &self.verdict {
+            Verdict::LeftOut(reason) => {
+                return write!(f, "  left out {:<48} {reason}", self.name);
+            }
+            Verdict::Passed => "passed",
+            Verdict::Failed => "FAILED",
+            Verdict::Reported => "value",
+        };
+        write!(
+            f,
+            "  {mark:<8} {:<48} {:>12.4e}   {}",
+            self.name, self.value, self.detail
+        )
+    }
+}
+
+/// The certificate of one Landau point; owns its data.
+#[derive(Clone, Debug)]
+pub struct Certificate {
+    pub model: String,
+    pub title: String,
+    pub k: f64,
+    /// M
+    pub resolution: usize,
+    has_coordinate: bool,
+    pub checks: Vec<Check>,
+}
+
+/// What the parts prove.
+const PARTS: [&str; 5] = [
+    "residual order",
+    "duality",
+    "two routes",
+    "nonlinear forms",
+    "convergence",
+];
+
+impl Certificate {
+    /// All five parts at one wavenumber.
+    ///
+    /// # Errors
+    /// A point that cannot be computed at all.
+    pub fn compute(setup: &Setup, k: f64, selection: Selection) -> Result<Self> {
+        check_wavenumber(k)?;
+        let base = setup.base(None)?;
+        let mut checks = Vec::new();
+        setup.with_point(&base, k, selection, |point| {
+            checks.extend(order::check(point)?);
+            checks.extend(adjointness::check(setup, &base, point)?);
+            checks.extend(routes(point)?);
+            checks.extend(forms::check(point.expansion.problem)?);
+            checks.extend(convergence(setup, &base, point)?);
+            Ok(())
+        })?;
+        let structure = setup.model.structure();
+        Ok(Certificate {
+            model: structure.name.clone(),
+            title: structure.title.clone(),
+            k,
+            resolution: setup.resolution,
+            has_coordinate: structure.coordinate.is_some(),
+            checks,
+        })
+    }
+
+    pub fn json(&self) -> Value {
+        let checks: Vec<Value> = self.checks.iter().map(Check::json).collect();
+        json!({"model": self.model, "k": self.k, "M": self.resolution, "checks": checks})
+    }
+
+    /// The certificate fails as a whole if one check does.
+    ///
+    /// # Errors
+    /// Names the checks that failed.
+    pub fn judge(&self) -> Result<()> {
+        let failed: Vec<&str> = self
+            .checks
+            .iter()
+            .filter(|c| c.verdict == Verdict::Failed)
+            .map(|c| c.name.as_str())
+            .collect();
+        if failed.is_empty() {
+            return Ok(());
+        }
+        Err(Error::computation(format!(
+            "the certificate does not hold: {}",
+            failed.join("; ")
+        )))
+    }
+}
+
+impl fmt::Display for Certificate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} at k = {}", self.title, self.k)?;
+        if self.has_coordinate {
+            write!(f, ", M = {}", self.resolution)?;
+        }
+        for (index, title) in PARTS.iter().enumerate() {
+            write!(f, "\n{}. {title}", index + 1)?;
+            for check in self.checks.iter().filter(|c| c.part == index + 1) {
+                write!(f, "\n{check}")?;
+            }
+        }
         Ok(())
-    })?;
-    Ok(checks)
+    }
 }
 
 /// Part 3: both routes to c2, biorthogonality.
 fn routes(point: &LandauPoint) -> Result<Vec<Check>> {
     let problem = point.expansion.problem;
     if let Err(reason) = problem.adjoint() {
-        return Ok(vec![Check::report(
+        return Ok(vec![Check::left_out(
             3,
-            "continuous adjoint",
-            0.0,
-            format!("left out: {reason}"),
+            "c2 by two routes",
+            reason.to_string(),
         )]);
     }
-    let adjoint = adjoint_mode(problem, point.expansion.k, point.c0)?;
+    let adjoint = adjoint_mode(problem, &point.expansion.pair)?;
     let mut checks = Vec::new();
     let tolerance = if problem.resolution == 0 { 1e-10 } else { 1e-4 };
+    // Relative to what c2 is the sum of: it may vanish itself.
+    let size = point.size().max(f64::MIN_POSITIVE);
     match second_landau(point, &adjoint)? {
         Some(c2) => {
-            let difference = (c2 - point.c2).norm() / point.c2.norm().max(1e-300);
+            let difference = (c2 - point.c2).norm() / size;
             checks.push(Check::below(
                 3,
                 "c2 by two routes, relative",
@@ -108,15 +263,14 @@ fn routes(point: &LandauPoint) -> Result<Vec<Check>> {
                 "discrete left vector against quadrature with the continuous adjoint",
             ));
         }
-        None => checks.push(Check::report(
+        None => checks.push(Check::left_out(
             3,
             "c2 by two routes",
-            0.0,
-            "left out: nonlinear boundary conditions",
+            "the quadrature does not take the data of nonlinear boundary conditions",
         )),
     }
     let expansion = point.third_order()?;
-    let bordered = (expansion.landau[1] - point.c2).norm() / point.c2.norm().max(1e-300);
+    let bordered = (expansion.landau[1] - point.c2).norm() / size;
     checks.push(Check::below(
         3,
         "c2 of the bordered problem, relative",
@@ -132,11 +286,15 @@ fn convergence(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<V
     let mut checks = Vec::new();
     let error = accuracy(setup, base, point)?;
     let m = setup.effective_resolution();
-    let detail = format!(
-        "M = {m} against {}, and one route against the other",
-        m + m.div_ceil(2)
-    );
-    let growth = point.c0.norm().max(1e-6);
+    let detail = match m {
+        0 => "rounding, and one route against the other".to_owned(),
+        m => format!(
+            "M = {m} against {} and {}, and one route against the other",
+            m + 1,
+            m + m.div_ceil(2)
+        ),
+    };
+    let growth = point.c0.norm().max(1e-3 * point.expansion.pair.scale);
     checks.push(Check::below(
         5,
         "error of c0, relative",
@@ -147,18 +305,21 @@ fn convergence(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<V
     checks.push(Check::below(
         5,
         "error of c2, relative",
-        error.c2 / point.c2.norm(),
+        error.c2 / point.size().max(f64::MIN_POSITIVE),
         1e-3,
         detail,
     ));
-    checks.push(Check::below(
-        5,
-        "tail of the base state",
-        base.tail(),
-        1e-9,
-        format!("degree {}", base.degree),
-    ));
-    for (key, mode) in &point.expansion.modes {
+    let solved = !setup.model.structure().base.solved.is_empty();
+    if m > 0 && solved {
+        checks.push(Check::below(
+            5,
+            "tail of the base state",
+            base.tail(),
+            1e-9,
+            format!("degree {}", base.degree),
+        ));
+    }
+    for (key, mode) in point.expansion.modes.iter().filter(|_| m > 0) {
         checks.push(Check::below(
             5,
             format!("tail of X[{};{}]", key.0, key.1),
@@ -168,29 +329,45 @@ fn convergence(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<V
         ));
     }
     let resonance = resonance(point)?;
-    let far = "distance of the k = 0 problem from singularity";
+    let scale = point.expansion.pair.scale.max(point.c0.norm());
+    let mut distance = |name: &str, value: f64, detail: &str| {
+        checks.push(match value <= SINGULAR * scale {
+            true => Check {
+                verdict: Verdict::Failed,
+                ..Check::report(5, name, value, format!("{detail}: as good as singular"))
+            },
+            false => Check::report(5, name, value, detail),
+        });
+    };
     if resonance.mean_flow.is_finite() {
-        checks.push(Check::report(
-            5,
+        let detail = "distance of the k = 0 problem from singularity";
+        distance(
             "distance to mean-flow resonance",
             resonance.mean_flow,
-            far,
-        ));
+            detail,
+        );
     }
-    checks.push(Check::report(
-        5,
+    let detail = "distance of the 2k problem from singularity";
+    distance(
         "distance to 2:1 resonance",
         resonance.second_harmonic,
-        "distance of the 2k problem from singularity",
-    ));
-    for (kind, order, value) in &point.expansion.multipliers {
-        checks.push(Check::below(
-            5,
-            format!("multiplier of the {kind:?} closure at order {order}"),
-            *value,
-            1e-6,
-            "vanishes where the model keeps what it claims to conserve",
-        ));
+        detail,
+    );
+    for multiplier in &point.expansion.multipliers {
+        let name = format!(
+            "multiplier of {} at order {}",
+            multiplier.closure, multiplier.order
+        );
+        checks.push(match multiplier.vanishes {
+            true => Check::below(
+                5,
+                name,
+                multiplier.relative,
+                1e-6,
+                "vanishes where the model keeps what it claims to conserve",
+            ),
+            false => Check::report(5, name, multiplier.relative, "relative to the forcing"),
+        });
     }
     Ok(checks)
 }
@@ -219,23 +396,4 @@ fn tail(point: &LandauPoint, values: &[C64]) -> f64 {
         }
     }
     worst
-}
-
-/// The certificate fails as a whole if one check does.
-///
-/// # Errors
-/// Names the checks that failed.
-pub fn judge(checks: &[Check]) -> Result<()> {
-    let failed: Vec<&str> = checks
-        .iter()
-        .filter(|c| !c.passed)
-        .map(|c| c.name.as_str())
-        .collect();
-    if failed.is_empty() {
-        return Ok(());
-    }
-    Err(Error::computation(format!(
-        "the certificate does not hold: {}",
-        failed.join("; ")
-    )))
 }

@@ -6,15 +6,50 @@
 
 use super::mode::{JetTable, Jets, Mode};
 use crate::collocation::GridKind;
-use crate::dense::{Factorised, Scalar};
+use crate::dense::{Factorised, Scalar, norm, scalars};
 use crate::error::{Error, Result};
 use crate::model::{C64, ClosureKind, End, Jet};
-use crate::problem::Problem;
+use crate::problem::{Problem, Solver, quarter_turn};
 use crate::spectrum::EigenPair;
 use std::collections::{BTreeMap, HashMap};
 
 /// Harmonic k ≥ 0 and order m.
 pub type Key = (usize, usize);
+
+/// A factorised problem in either arithmetic.
+enum AnySolver {
+    Real(Solver<f64>),
+    Complex(Solver<C64>),
+}
+
+/// Scalars whose factorised problems can be kept side by side.
+trait Kept: Scalar {
+    fn kept(solver: Solver<Self>) -> AnySolver;
+}
+
+impl Kept for f64 {
+    fn kept(solver: Solver<f64>) -> AnySolver {
+        AnySolver::Real(solver)
+    }
+}
+
+impl Kept for C64 {
+    fn kept(solver: Solver<C64>) -> AnySolver {
+        AnySolver::Complex(solver)
+    }
+}
+
+/// The multiplier of a closure of a mean mode.
+#[derive(Clone, Debug)]
+pub struct Multiplier {
+    /// What is closed, in words.
+    pub closure: String,
+    pub order: usize,
+    /// Its size in the balances over that of the forcing.
+    pub relative: f64,
+    /// Whether it has to vanish.
+    pub vanishes: bool,
+}
 
 /// The modes and coefficients found so far.
 pub struct Expansion<'p, 'm> {
@@ -24,8 +59,10 @@ pub struct Expansion<'p, 'm> {
     pub modes: BTreeMap<Key, Mode>,
     /// c0, c2, … as a0 + i b0, a2 + i b2, …
     pub landau: Vec<C64>,
-    /// Multipliers of the closures at k = 0: name of the kind, order, value relative to the forcing.
-    pub multipliers: Vec<(ClosureKind, usize, f64)>,
+    /// Multipliers of the closures at k = 0.
+    pub multipliers: Vec<Multiplier>,
+    /// The factorised problems of modes that were solved for.
+    solvers: BTreeMap<Key, AnySolver>,
     /// Jets of a mode on the grids of the rows, made when first needed.
     jets: HashMap<(Key, GridKind), Jets>,
 }
@@ -58,7 +95,17 @@ impl<'p, 'm> Expansion<'p, 'm> {
             modes,
             landau,
             multipliers: Vec::new(),
+            solvers: BTreeMap::new(),
             jets: HashMap::new(),
+        })
+    }
+
+    /// How far the problem that was solved for X[k;m] is from singularity.
+    pub fn distance(&self, key: Key) -> Option<f64> {
+        let k = key.0 as f64 * self.k;
+        Some(match self.solvers.get(&key)? {
+            AnySolver::Real(solver) => solver.distance(&self.problem.mass(k)),
+            AnySolver::Complex(solver) => solver.distance(&self.problem.mass(k)),
         })
     }
 
@@ -72,9 +119,9 @@ impl<'p, 'm> Expansion<'p, 'm> {
     /// # Errors
     /// A singular problem: resonance.
     pub fn solve(&mut self, key: Key) -> Result<()> {
-        let real = self.problem.is_real() && self.landau.iter().all(|c| c.im == 0.0);
-        let mean_real = key.0 == 0 && (self.problem.structure().parity.is_none() || real);
-        let mode = if real || mean_real {
+        // Without the mirror a mean mode is real in the basis of the fields themselves.
+        let plain_mean = key.0 == 0 && !self.problem.is_real();
+        let mode = if self.is_real() || plain_mean {
             self.solve_as::<f64>(key)?
         } else {
             self.solve_as::<C64>(key)?
@@ -83,19 +130,31 @@ impl<'p, 'm> Expansion<'p, 'm> {
         Ok(())
     }
 
-    fn solve_as<T: Scalar>(&mut self, key: Key) -> Result<Mode> {
+    /// Whether every mode is a real vector of the solver's basis: in a model with the mirror symmetry, those of
+    /// a steady pattern, which is its own mirror image. A wave is not, and drives a mean flow along x.
+    fn is_real(&self) -> bool {
+        self.problem.is_real() && self.landau.iter().all(|c| c.im == 0.0)
+    }
+
+    fn solve_as<T: Kept>(&mut self, key: Key) -> Result<Mode> {
         let harmonic = key.0;
         let right = self.forcing(key);
         let k = harmonic as f64 * self.k;
         let shift = self.shift(key);
-        let mut system: Vec<T> = right.iter().map(|&v| T::from_complex(v)).collect();
+        let mut system: Vec<T> = scalars(&right);
         let matrix = self.problem.shifted::<T>(k, shift);
         system.resize(matrix.nrows(), T::zero_impl());
-        let solution = match self.problem.even_part() {
-            Some(even) if harmonic == 0 => even.solve(&matrix, &system),
-            _ => Factorised::new(matrix).solve_regular(&system),
+        let even = self.problem.even_part();
+        let solver = match even.filter(|_| harmonic == 0 && self.is_real()) {
+            Some(even) => Solver::even(&matrix, even),
+            None => Solver::whole(matrix),
         };
-        let solution = solution.ok_or_else(|| self.singular(key))?;
+        let solution = solver.solve(&system).ok_or_else(|| self.singular(key))?;
+        self.solvers.insert(key, T::kept(solver));
+        if harmonic == 0 {
+            let n = self.problem.direct.layout.size;
+            self.record_multipliers(key.1, &solution[n..], norm(&right));
+        }
         Ok(self.mode(key, &solution))
     }
 
@@ -118,8 +177,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
     /// A singular problem.
     pub fn solve_fundamental(&mut self, order: usize) -> Result<()> {
         let key = (1, order);
-        let real = self.problem.is_real() && self.landau.iter().all(|c| c.im == 0.0);
-        let (mode, coefficient) = if real {
+        let (mode, coefficient) = if self.is_real() {
             self.bordered::<f64>(key)?
         } else {
             self.bordered::<C64>(key)?
@@ -141,17 +199,32 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let right = self.forcing(key);
         let matrix = self.problem.shifted::<T>(self.k, self.shift(key));
         let mass = self.problem.mass::<T>(self.k);
-        let fundamental = self.solver_basis(&self.modes[&(1, 1)].values);
-        let fundamental: Vec<T> = fundamental.iter().map(|&v| T::from_complex(v)).collect();
-        let left: Vec<T> = self.pair.left.iter().map(|&v| T::from_complex(v)).collect();
+        let fundamental: Vec<T> = scalars(&self.solver_basis(&self.modes[&(1, 1)].values));
+        let left: Vec<T> = scalars(&self.pair.left);
         let border = (mass.apply(&fundamental), mass.apply_adjoint(&left));
         let bordered = crate::dense::bordered(&matrix, &[border]);
-        let mut system: Vec<T> = right.iter().map(|&v| T::from_complex(v)).collect();
+        let mut system: Vec<T> = scalars(&right);
         system.push(T::from_complex(C64::new(0.0, 0.0)));
         let solution = Factorised::new(bordered).solve_regular(&system);
         let solution = solution
             .ok_or_else(|| Error::computation("the bordered problem for c2 is singular"))?;
         Ok((self.mode(key, &solution[..n]), solution[n].complex()))
+    }
+
+    /// The multipliers of closures that are no unknowns of the model.
+    fn record_multipliers<T: Scalar>(&mut self, order: usize, values: &[T], forcing: f64) {
+        for (border, value) in self.problem.borders.iter().zip(values) {
+            let size = norm(&border.column) * value.size();
+            let relative = if size == 0.0 { 0.0 } else { size / forcing };
+            if border.kind != ClosureKind::Unknown {
+                self.multipliers.push(Multiplier {
+                    closure: border.name.clone(),
+                    order,
+                    relative,
+                    vanishes: true,
+                });
+            }
+        }
     }
 
     fn mode<T: Scalar>(&mut self, key: Key, solution: &[T]) -> Mode {
@@ -177,21 +250,10 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let mut uniform =
             vec![C64::new(0.0, 0.0); self.problem.structure().fields.len() - profiles];
         if harmonic == 0 {
-            let size = self.problem.direct.layout.size;
-            let largest = solution[..size]
-                .iter()
-                .map(|v| v.complex().norm())
-                .fold(1e-300, f64::max);
             for (border, value) in self.problem.borders.iter().zip(&solution[n..]) {
-                match (border.kind, border.field) {
-                    (ClosureKind::Unknown, Some(field)) => {
-                        uniform[field - profiles] = value.complex()
-                    }
-                    _ => self.multipliers.push((
-                        border.kind,
-                        order,
-                        value.complex().norm() / largest,
-                    )),
+                if let (ClosureKind::Unknown, Some(field)) = (border.kind, border.field) {
+                    let turn = quarter_turn(self.problem.direct.column_turn(field));
+                    uniform[field - profiles] = value.complex() * turn;
                 }
             }
         }
@@ -213,17 +275,26 @@ impl<'p, 'm> Expansion<'p, 'm> {
     /// G[k;m] with the boundary data, in the solver's basis: everything that modes of lower order
     /// force, except what c_{m−1} multiplies.
     pub fn forcing(&mut self, key: Key) -> Vec<C64> {
-        let structure = self.problem.structure();
-        let layout = &self.problem.direct.layout;
-        let mut right = vec![C64::new(0.0, 0.0); layout.size];
+        let mut right = vec![C64::new(0.0, 0.0); self.problem.direct.layout.size];
         // Lower orders of the same harmonic through the time derivative: −(q a + i k b) M0 X[k;q].
         self.time_terms(key, &mut right);
-        for degree in 2..=structure.order {
-            for (factors, multiplicity) in products(&self.modes, key, degree) {
-                self.add_product(degree, &factors, multiplicity, &mut right);
-            }
+        for part in self.products_forcing(key) {
+            right.iter_mut().zip(part).for_each(|(r, p)| *r += p);
         }
         right
+    }
+
+    /// The part of G[k;m] that products of modes force, one vector a product.
+    pub fn products_forcing(&mut self, key: Key) -> Vec<Vec<C64>> {
+        let mut parts = Vec::new();
+        for degree in 2..=self.problem.structure().order {
+            for (factors, multiplicity) in products(&self.modes, key, degree) {
+                let mut part = vec![C64::new(0.0, 0.0); self.problem.direct.layout.size];
+                self.add_product(degree, &factors, multiplicity, &mut part);
+                parts.push(part);
+            }
+        }
+        parts
     }
 
     fn time_terms(&self, (k, m): Key, right: &mut [C64]) {
@@ -296,7 +367,8 @@ impl<'p, 'm> Expansion<'p, 'm> {
                 total += value * *coefficient;
             }
             let position = problem.direct.layout.walls + index;
-            right[position] -= problem.direct.wall_factor(wall) * total * multiplicity;
+            // 0 = W x + N(x): a row of L, and its data beside those of the balances.
+            right[position] += problem.direct.wall_factor(wall) * total * multiplicity;
         }
     }
 

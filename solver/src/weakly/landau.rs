@@ -1,5 +1,6 @@
 //! The Landau point: c0, c2 and what belongs to them at one wavenumber.
 
+use super::bifurcation::{Bifurcation, equilibrium};
 use super::expansion::Expansion;
 use super::normalisation::{quadrature_grid, quadrature_weights};
 use crate::collocation::Grid;
@@ -25,6 +26,8 @@ pub struct LandauPoint<'p, 'm> {
     pub expansion: Expansion<'p, 'm>,
     pub c0: C64,
     pub c2: C64,
+    /// What c2 is the sum of: one number for each product of modes that forces X[1;3].
+    pub contributions: Vec<C64>,
 }
 
 /// The Landau point of a selected mode.
@@ -73,9 +76,15 @@ pub fn from_pair<'p, 'm>(problem: &'p Problem<'m>, pair: EigenPair) -> Result<La
     let mut expansion = Expansion::new(problem, pair)?;
     expansion.solve((0, 2))?;
     expansion.solve((2, 2))?;
-    let forcing = expansion.forcing((1, 3));
-    let c2 = expansion.project(&forcing);
-    Ok(LandauPoint { expansion, c0, c2 })
+    let forcing = expansion.products_forcing((1, 3));
+    let contributions = expansion.project(&forcing);
+    let c2 = contributions.iter().sum();
+    Ok(LandauPoint {
+        expansion,
+        c0,
+        c2,
+        contributions,
+    })
 }
 
 impl<'p, 'm> LandauPoint<'p, 'm> {
@@ -92,34 +101,38 @@ impl<'p, 'm> LandauPoint<'p, 'm> {
         Ok(expansion)
     }
 
-    /// A_e² = −a0/a2 where that is positive, P (4.1).
-    pub fn amplitude(&self) -> Option<f64> {
-        let square = -self.c0.re / self.c2.re;
-        (square.is_finite() && square > 0.0).then(|| square.sqrt())
+    /// Σ |contribution to c2|: what its rounding errors are relative to.
+    pub fn size(&self) -> f64 {
+        self.contributions.iter().map(|c| c.norm()).sum()
     }
 
-    /// `supercritical pitchfork` and the like.
-    pub fn bifurcation(&self) -> String {
-        let side = if self.c2.re < 0.0 {
-            "supercritical"
-        } else {
-            "subcritical"
-        };
-        let kind = if self.c0.im == 0.0 {
-            "pitchfork"
-        } else {
-            "Hopf"
-        };
-        format!("{side} {kind}")
+    /// A_e² = −a0/a2 where that is positive, P (4.1).
+    pub fn amplitude(&self) -> Option<f64> {
+        let floor = self.rounding();
+        equilibrium((self.c0, floor[0]), (self.c2, floor[1]))
+    }
+
+    /// The kind of bifurcation, rounding set aside.
+    pub fn bifurcation(&self) -> Bifurcation {
+        let floor = self.rounding();
+        Bifurcation::new((self.c0, floor[0]), (self.c2, floor[1]))
+    }
+
+    /// What rounding leaves undecided of c0 and c2 at least.
+    pub fn rounding(&self) -> [f64; 2] {
+        let scale = self.expansion.pair.scale.max(self.c0.norm());
+        [1e-14 * scale, 1e-14 * self.size()]
     }
 }
 
 impl Expansion<'_, '_> {
-    /// ⟨left vector, forcing⟩ / ⟨left vector, M0 X[1;1]⟩ with the discrete left vector.
-    pub fn project(&self, forcing: &[C64]) -> C64 {
+    /// ⟨left vector, forcing⟩ / ⟨left vector, M0 X[1;1]⟩ of each, with the discrete left vector.
+    pub fn project(&self, forcing: &[Vec<C64>]) -> Vec<C64> {
         let mass = self.problem.mass::<C64>(self.k);
         let mass_x = mass.apply(&self.solver_basis(&self.modes[&(1, 1)].values));
-        dot(&self.pair.left, forcing) / dot(&self.pair.left, &mass_x)
+        let below = dot(&self.pair.left, &mass_x);
+        let above = forcing.iter().map(|f| dot(&self.pair.left, f));
+        above.map(|a| a / below).collect()
     }
 }
 

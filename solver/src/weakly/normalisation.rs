@@ -3,17 +3,33 @@
 use crate::collocation::{Grid, GridKind, clenshaw_curtis};
 use crate::error::{Error, Result};
 use crate::model::{C64, KernelId, evaluate};
-use crate::problem::Problem;
+use crate::problem::{Problem, quarter_turn};
+
+/// Sizes of a fundamental whose powers double precision can hold.
+const SIZES: std::ops::Range<f64> = 1e-60..1e60;
 
 /// The factor by which the fundamental has to be multiplied.
 ///
 /// Its modulus meets the spec's condition. Its phase makes the profile value of largest modulus of
-/// the first field real and positive (a field of odd parity: imaginary), or, for a point value,
-/// that value.
+/// the first field real and positive, or, for a point value, that value; imaginary for a field that is odd
+/// in the mirror x → −x, so that a steady pattern is its own mirror image.
 ///
 /// # Errors
 /// A mode whose normalising quantity vanishes.
 pub fn normalise(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
+    let factor = unchecked(problem, k, values)?;
+    let size = factor.norm() * values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    if SIZES.contains(&size) {
+        return Ok(factor);
+    }
+    Err(Error::computation(format!(
+        "the normalisation {} asks for a mode of size {size:.1e}: its square and cube are out of the range of \
+         double precision",
+        problem.structure().amplitude.description
+    )))
+}
+
+fn unchecked(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
     let structure = problem.structure();
     let amplitude = &structure.amplitude;
     if let Some(field) = amplitude.field {
@@ -24,10 +40,13 @@ pub fn normalise(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
         );
         let (wanted, place) = (out[0].abs(), out[1]);
         let value = point_value(problem, values, field, place);
+        if !(wanted > 0.0) {
+            return Err(vanishes(problem));
+        }
         if value.norm() < 1e-12 * values.iter().map(|v| v.norm()).fold(0.0, f64::max) {
             return Err(vanishes(problem));
         }
-        return Ok(value.conj() / value.norm_sqr() * wanted);
+        return Ok(turn(problem, field) * value.conj() / value.norm_sqr() * wanted);
     }
     let (square, wanted) = weighted_square(problem, k, values);
     if !(square > 0.0 && wanted > 0.0) {
@@ -102,21 +121,20 @@ pub fn quadrature_weights(problem: &Problem, grid: GridKind) -> Vec<f64> {
 }
 
 fn phase(problem: &Problem, values: &[C64]) -> C64 {
-    let parity = problem.structure().parity.as_ref();
     for (field, block) in problem.direct.layout.columns.iter().enumerate() {
         let own = &values[block.offset..block.offset + block.len];
         let Some(largest) = own.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())) else {
             continue;
         };
         if largest.norm() > 1e-9 * values.iter().map(|v| v.norm()).fold(0.0, f64::max) {
-            let odd = parity.is_some_and(|p| p.fields[field]);
-            let turn = quarter(odd);
-            return turn * largest.conj() / largest.norm();
+            return turn(problem, field) * largest.conj() / largest.norm();
         }
     }
     C64::new(1.0, 0.0)
 }
 
-fn quarter(odd: bool) -> C64 {
-    crate::problem::quarter_turn(usize::from(odd))
+/// i for a field that is odd in the mirror.
+fn turn(problem: &Problem, field: usize) -> C64 {
+    let parity = problem.structure().parity.as_ref();
+    quarter_turn(usize::from(parity.is_some_and(|p| p.fields[field])))
 }

@@ -52,7 +52,13 @@ pub(super) fn sweep(
     for (index, rows) in &found {
         for (panel, quantity) in drawn.iter_mut().zip(columns) {
             let label = &cases[*index].label;
-            panel.curve(label, Style::Line, column(rows, *quantity));
+            let points = column(rows, *quantity);
+            match quantity {
+                Column::A0 => panel.curve(label, Style::Line, points),
+                Column::A2 | Column::Amplitude => {
+                    panel.curve_with_poles(label, Style::Line, points);
+                }
+            }
         }
         for row in rows {
             let pair = |c: Option<[f64; 2]>| c.unwrap_or([f64::NAN; 2]);

@@ -8,6 +8,7 @@ use super::{Named, each};
 use crate::error::{Error, Result};
 use crate::figure::{Panel, Style};
 use crate::study::critical::{self, Quantity, Question};
+use crate::study::minimise;
 use crate::study::{self, Setup};
 use crate::weakly::Selection;
 use indicatif::ProgressBar;
@@ -32,7 +33,7 @@ fn answer(setup: &Setup, case: &Case, asked: &Asked) -> Result<[f64; 2]> {
     let question = question(setup, case, asked)?;
     let hidden = ProgressBar::hidden();
     let found = match asked.minimize {
-        Some([from, to]) => critical::minimise(setup, question, (from, to), &hidden)?,
+        Some([from, to]) => minimise::minimise(setup, question, (from, to), &hidden)?,
         None => critical::critical(setup, question, &hidden)?.swap_remove(0),
     };
     Ok([found.value, found.k])

@@ -136,7 +136,7 @@ pub(super) fn spectrum(
                 for k in over.values() {
                     let mode = spectrum::leading(problem, k)?;
                     let adjoint =
-                        adjoint_mode(problem, k, mode.c).map_or(f64::NAN, |adjoint| adjoint.c.re);
+                        adjoint_mode(problem, &mode).map_or(f64::NAN, |adjoint| adjoint.c.re);
                     rows.push([k, mode.c.re, adjoint]);
                 }
                 Ok(rows)

@@ -17,57 +17,44 @@ const DEGREE: usize = 11;
 pub(super) fn check(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Vec<Check>> {
     let problem = point.expansion.problem;
     if let Err(reason) = problem.adjoint() {
-        return Ok(vec![Check::report(
-            2,
-            "duality",
-            0.0,
-            format!("left out: {reason}"),
-        )]);
+        return Ok(vec![Check::left_out(2, "duality", reason.to_string())]);
     }
     let k = point.expansion.k;
     let mut checks = Vec::new();
     let worst = (0..4)
         .map(|seed| duality(problem, k, seed))
         .fold(0.0, f64::max);
-    let points = 4 * problem.resolution + 1;
-    checks.push(Check::below(
-        2,
-        "duality, relative",
-        worst,
-        1e-10,
-        format!("random smooth fields, {points} points"),
-    ));
-    let mut resolution = setup.effective_resolution();
-    for _ in 0..2 {
-        let mut finer = setup.clone();
-        finer.resolution = resolution.max(4);
-        let difference = finer.with_problem(base, |problem| {
-            let pair = crate::weakly::select(problem, k, Selection::Near(point.c0))?;
-            let adjoint = adjoint_mode(problem, k, pair.c)?;
-            Ok((adjoint.c.conj() - pair.c).norm())
-        })?;
-        checks.push(Check::report(
-            2,
-            format!("|c0(L) − conj c0(L†)| at M = {resolution}"),
-            difference,
-            "two discretisations",
-        ));
-        if resolution == 0 {
-            break;
-        }
-        resolution += resolution.div_ceil(2);
+    let detail = match problem.resolution {
+        0 => "random numbers".to_owned(),
+        m => format!("random smooth fields, {} points", 4 * m + 1),
+    };
+    checks.push(Check::below(2, "duality, relative", worst, 1e-10, detail));
+    let mut resolutions = vec![setup.effective_resolution()];
+    if resolutions[0] > 0 {
+        resolutions.push(resolutions[0] + resolutions[0].div_ceil(2));
+    }
+    for resolution in resolutions {
+        let other = Problem::new(setup.model, base, &setup.discretisation, resolution)?;
+        let pair = crate::weakly::select(&other, k, Selection::Near(point.c0))?;
+        let difference = (adjoint_mode(&other, &pair)?.c.conj() - pair.c).norm();
+        let name = match resolution {
+            0 => "|c0(L) − conj c0(L†)|".to_owned(),
+            m => format!("|c0(L) − conj c0(L†)| at M = {m}"),
+        };
+        checks.push(Check::report(2, name, difference, "two discretisations"));
     }
     let direct = spectrum::eigenvalues(problem, k)?;
     let adjoint = spectrum::adjoint_eigenvalues(problem, k)?;
     let leading = direct
+        .values
         .first()
-        .zip(adjoint.first())
+        .zip(adjoint.values.first())
         .map_or(f64::NAN, |(a, b)| (a - b.conj()).norm().min((a - b).norm()));
     checks.push(Check::report(
         2,
         "leading eigenvalues of L and L†, difference",
         leading,
-        format!("M = {}", problem.resolution),
+        "each discretised on its own",
     ));
     Ok(checks)
 }

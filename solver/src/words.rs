@@ -1,4 +1,4 @@
-//! Numbers as JSON and as text.
+//! Numbers in words and in JSON.
 
 use crate::model::C64;
 use crate::parameters::Parameters;
@@ -34,17 +34,42 @@ pub fn parameters(setup: &Setup, parameters: &Parameters) -> Value {
     Value::Object(map)
 }
 
+/// A number without the part that its error leaves nothing of.
+pub fn settled(value: C64, error: f64) -> C64 {
+    let part = |x: f64| if x.abs() <= 1e-2 * error { 0.0 } else { x };
+    C64::new(part(value.re), part(value.im))
+}
+
 /// `0.00190361` or `0.0037397 - 0.2375265 i`
 pub fn shown(value: C64) -> String {
-    let digits = |x: f64| format!("{x:.10}");
-    let small = value.norm() < 1e-3 && value.norm() > 0.0;
-    let digits = |x: f64| if small { format!("{x:.9e}") } else { digits(x) };
+    let small = value.norm() < 1e-3 && value.norm() > 0.0 || value.norm() >= 1e6;
+    let digits = |x: f64| {
+        if small {
+            format!("{x:.9e}")
+        } else {
+            format!("{x:.10}")
+        }
+    };
     if value.im == 0.0 {
         digits(value.re)
     } else {
         let sign = if value.im < 0.0 { '-' } else { '+' };
         format!("{} {sign} {} i", digits(value.re), digits(value.im.abs()))
     }
+}
+
+/// A number with the digits that its error leaves standing, ten at most.
+pub fn with_error(value: f64, error: f64) -> String {
+    let place = if error > 0.0 {
+        -error.log10().floor()
+    } else {
+        10.0
+    };
+    if value.abs() < 1e-4 || value.abs() >= 1e8 {
+        return format!("{value:.9e} ± {error:.0e}");
+    }
+    let decimals = place.clamp(0.0, 10.0) as usize;
+    format!("{value:.decimals$} ± {error:.0e}")
 }
 
 /// The amplitude equation with its numbers.

@@ -1,0 +1,244 @@
+//! Infinite eigenvalues of a pencil L x = c M0 x deflated exactly, so that none can show up as a spurious
+//! finite one.
+
+use super::scale::Spectrum;
+use crate::dense::Scalar;
+use crate::error::{Error, Result};
+use crate::model::C64;
+use faer::linalg::solvers::Solve;
+use faer::{Mat, MatRef};
+
+/// Rounds of deflation: boundary conditions, a constraint, its hidden constraint, and some to spare.
+const MOST_DEFLATIONS: usize = 6;
+/// Singular directions of M0 after deflation, relative to its largest.
+const RANK: f64 = 1e-11;
+/// Rounds in which rows and columns are brought to comparable size.
+const BALANCING: usize = 3;
+/// Shifts tried: one, one on the scale of what it found, and one beside an eigenvalue that was hit.
+const MOST_SHIFTS: usize = 3;
+/// An irrational number is no eigenvalue of a model with round parameters.
+const FIRST_SHIFT: f64 = 0.577_215_664_901_532_9;
+/// The shift over the scale of the slow eigenvalues at which these are accurate.
+const GOOD_SHIFT: std::ops::Range<f64> = 1e-3..1e6;
+
+/// A pencil without infinite eigenvalues: x = basis · w.
+pub(super) struct Reduced<T: Scalar> {
+    operator: Mat<T>,
+    mass: Mat<T>,
+    basis: Mat<T>,
+}
+
+impl<T: Scalar> Reduced<T> {
+    /// Removes the algebraic equations of a pencil, as often as they hide new ones.
+    ///
+    /// # Errors
+    /// A pencil that is singular for every c, or has no finite eigenvalue.
+    pub fn new((mut operator, mut mass): (Mat<T>, Mat<T>)) -> Result<Self> {
+        let mut basis = balance(&mut operator, &mut mass);
+        for _ in 0..2 * MOST_DEFLATIONS {
+            let size = operator.nrows();
+            let zero = |i: &usize| (0..size).all(|j| mass[(*i, j)].size() == 0.0);
+            let (algebraic, dynamic): (Vec<usize>, Vec<usize>) = (0..size).partition(zero);
+            if dynamic.is_empty() {
+                return Err(Error::computation(
+                    "the problem has no finite eigenvalue at this wavenumber",
+                ));
+            }
+            if algebraic.is_empty() {
+                if !expose(&mut operator, &mut mass) {
+                    return Ok(Reduced {
+                        operator,
+                        mass,
+                        basis,
+                    });
+                }
+                continue;
+            }
+            let null = null_space(&operator, &algebraic)?;
+            let rows = |m: &Mat<T>| Mat::from_fn(dynamic.len(), size, |i, j| m[(dynamic[i], j)]);
+            operator = rows(&operator) * &null;
+            mass = rows(&mass) * &null;
+            basis = &basis * &null;
+        }
+        Err(Error::computation(
+            "the mass matrix stays singular after its hidden constraints are removed",
+        ))
+    }
+
+    /// All eigenvalues by decreasing real part.
+    ///
+    /// # Errors
+    /// An iteration that does not converge.
+    pub fn eigenvalues(&self) -> Result<Spectrum> {
+        self.solve(|shift, inverse| {
+            let values = T::eigenvalues(inverse)?;
+            Some(values.into_iter().map(|mu| shift + mu.inv()).collect())
+        })
+        .map(Spectrum::new)
+    }
+
+    /// All eigenvalues with right eigenvectors of the whole pencil, by decreasing real part.
+    ///
+    /// # Errors
+    /// An iteration that does not converge.
+    pub fn eigenvectors(&self) -> Result<(Spectrum, Vec<(C64, Vec<C64>)>)> {
+        let mut vectors = Mat::zeros(0, 0);
+        let values = self.solve(|shift, inverse| {
+            let (values, found) = T::eigen(inverse)?;
+            vectors = found;
+            Some(values.into_iter().map(|mu| shift + mu.inv()).collect())
+        })?;
+        let n = self.basis.nrows();
+        let basis = Mat::from_fn(n, self.basis.ncols(), |i, j| self.basis[(i, j)].complex());
+        let full = &basis * &vectors;
+        let column = |j: usize| (0..n).map(|i| full[(i, j)]).collect();
+        let mut pairs: Vec<(C64, Vec<C64>)> = (0..values.len())
+            .filter(|&j| values[j].re.is_finite() && values[j].im.is_finite())
+            .map(|j| (values[j], column(j)))
+            .collect();
+        pairs.sort_by(|a, b| super::scale::decreasing(&a.0, &b.0));
+        Ok((Spectrum::new(values), pairs))
+    }
+
+    /// Eigenvalues by `method` from (L − σ M0)⁻¹ M0, σ being on the scale of the slow ones.
+    fn solve(
+        &self,
+        mut method: impl FnMut(C64, MatRef<'_, T>) -> Option<Vec<C64>>,
+    ) -> Result<Vec<C64>> {
+        let mut shift = FIRST_SHIFT;
+        let mut found = None;
+        for _ in 0..MOST_SHIFTS {
+            let inverse = self.shift_invert(C64::new(shift, 0.0));
+            let finite = (0..inverse.ncols())
+                .all(|j| inverse.col_as_slice(j).iter().all(|v| v.size().is_finite()));
+            let values = finite
+                .then(|| method(C64::new(shift, 0.0), inverse.as_ref()))
+                .flatten();
+            let Some(values) = values else {
+                shift *= 1.37;
+                continue;
+            };
+            let scale = Spectrum::new(values.clone()).scale();
+            found = Some(values);
+            if scale == 0.0 || GOOD_SHIFT.contains(&(shift / scale)) {
+                break;
+            }
+            shift = FIRST_SHIFT * scale;
+        }
+        found.ok_or_else(|| Error::computation("the eigenvalue iteration did not converge"))
+    }
+
+    /// (L − σ M0)⁻¹ M0
+    fn shift_invert(&self, shift: C64) -> Mat<T> {
+        let n = self.operator.nrows();
+        let shifted = Mat::from_fn(n, n, |i, j| {
+            T::from_complex(self.operator[(i, j)].complex() - shift * self.mass[(i, j)].complex())
+        });
+        let scale: Vec<f64> = (0..n)
+            .map(|i| largest_of_row(&shifted, i).recip())
+            .collect();
+        let row_scaled = |m: MatRef<'_, T>| Mat::from_fn(n, n, |i, j| m[(i, j)].times(scale[i]));
+        let lu = row_scaled(shifted.as_ref()).partial_piv_lu();
+        let mut inverse = row_scaled(self.mass.as_ref());
+        lu.solve_in_place(inverse.as_mut());
+        inverse
+    }
+}
+
+/// Brings the entries of rows and columns to comparable size; the scales of the unknowns, diag(d) with
+/// x = diag(d) w.
+fn balance<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>) -> Mat<T> {
+    let n = operator.ncols();
+    let mut scales = vec![1.0; n];
+    for _ in 0..BALANCING {
+        for i in 0..operator.nrows() {
+            let size = largest_of_row(operator, i).max(largest_of_row(mass, i));
+            let factor = power_of_two(size);
+            for j in 0..n {
+                operator[(i, j)] = operator[(i, j)].times(factor);
+                mass[(i, j)] = mass[(i, j)].times(factor);
+            }
+        }
+        for (j, scale) in scales.iter_mut().enumerate() {
+            let column = operator.col_as_slice(j).iter().chain(mass.col_as_slice(j));
+            let factor = power_of_two(column.map(|v| v.size()).fold(0.0, f64::max));
+            *scale *= factor;
+            for matrix in [&mut *operator, &mut *mass] {
+                let entries = matrix.col_as_slice_mut(j);
+                entries.iter_mut().for_each(|v| *v = v.times(factor));
+            }
+        }
+    }
+    Mat::from_fn(n, n, |i, j| {
+        T::from_complex(C64::new(if i == j { scales[i] } else { 0.0 }, 0.0))
+    })
+}
+
+/// 1/size, rounded to a power of two, so that scaling is exact.
+fn power_of_two(size: f64) -> f64 {
+    if size > f64::MIN_POSITIVE && size.is_finite() {
+        (-size.log2().round()).exp2()
+    } else {
+        1.0
+    }
+}
+
+fn largest_of_row<T: Scalar>(matrix: &Mat<T>, row: usize) -> f64 {
+    let sizes = (0..matrix.ncols()).map(|j| matrix[(row, j)].size());
+    sizes.fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// Rotates rows so that hidden algebraic equations show as rows without mass; false where there are none.
+fn expose<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>) -> bool {
+    let size = mass.nrows();
+    // Rows of comparable mass first.
+    for i in 0..size {
+        let factor = power_of_two(largest_of_row(mass, i));
+        for j in 0..size {
+            operator[(i, j)] = operator[(i, j)].times(factor);
+            mass[(i, j)] = mass[(i, j)].times(factor);
+        }
+    }
+    let qr = mass.col_piv_qr();
+    let r = qr.thin_R();
+    let largest = r[(0, 0)].size();
+    let rank = (0..size)
+        .filter(|&i| r[(i, i)].size() > RANK * largest)
+        .count();
+    if rank == size {
+        return false;
+    }
+    let q = qr.compute_Q();
+    *operator = q.adjoint() * &*operator;
+    *mass = q.adjoint() * &*mass;
+    for i in rank..size {
+        for j in 0..size {
+            mass[(i, j)] = T::zero_impl();
+        }
+    }
+    true
+}
+
+/// The x for which the algebraic rows vanish: the last columns of Q of their adjoint, each row scaled first
+/// so that no equation outweighs another.
+fn null_space<T: Scalar>(operator: &Mat<T>, algebraic: &[usize]) -> Result<Mat<T>> {
+    let size = operator.ncols();
+    let constraints = Mat::from_fn(size, algebraic.len(), |j, a| {
+        let row = algebraic[a];
+        operator[(row, j)]
+            .conjugate()
+            .times(largest_of_row(operator, row).recip())
+    });
+    let qr = constraints.col_piv_qr();
+    let r = qr.thin_R();
+    let count = algebraic.len();
+    let largest = r[(0, 0)].size();
+    if (0..count).any(|i| r[(i, i)].size() <= RANK * largest) {
+        return Err(Error::computation(
+            "the linear problem is singular for every growth rate: a field is determined up to \
+             something arbitrary; name it as `gauge` in the block `mean`, or check the balances",
+        ));
+    }
+    let q = qr.compute_Q();
+    Ok(q.subcols(count, size - count).to_owned())
+}

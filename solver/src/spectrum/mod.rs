@@ -1,0 +1,182 @@
+//! Spectra of matrix pencils L x = c M0 x with singular M0, and modes refined or followed.
+//!
+//! Boundary conditions, continuity and closures make M0 singular; the infinite eigenvalues are
+//! deflated exactly before anything is computed.
+
+mod deflate;
+mod iteration;
+mod scale;
+
+pub use iteration::{beside, likeness};
+pub use scale::Spectrum;
+
+use crate::error::{Error, Result};
+use crate::model::C64;
+use crate::problem::Problem;
+use deflate::Reduced;
+use iteration::refine;
+
+/// Cosine between a mode and its continuation below which it counts as another mode.
+const SAME_SHAPE: f64 = 0.6;
+/// Two eigenvalues nearer than this, relative to themselves or the scale of the slow ones, are one that is
+/// not simple: rounding splits a defective one by the root of the machine's precision.
+const SIMPLE: f64 = 1e-7;
+
+/// An eigenvalue with right and left eigenvectors, in the solver's basis.
+#[derive(Clone, Debug)]
+pub struct EigenPair {
+    pub k: f64,
+    pub c: C64,
+    pub right: Vec<C64>,
+    /// yᴴ L = c yᴴ M0, boundary rows included.
+    pub left: Vec<C64>,
+    /// The unit of time of the spectrum around it.
+    pub scale: f64,
+}
+
+/// All finite eigenvalues by decreasing real part.
+///
+/// # Errors
+/// A pencil that is singular for every c (a gauge that the spec does not name).
+pub fn eigenvalues(problem: &Problem, k: f64) -> Result<Spectrum> {
+    match (k == 0.0, problem.is_real()) {
+        (true, _) => Reduced::<f64>::new(problem.bordered_pencil())?.eigenvalues(),
+        (false, true) => Reduced::<f64>::new(problem.pencil(k))?.eigenvalues(),
+        (false, false) => Reduced::<C64>::new(problem.pencil(k))?.eigenvalues(),
+    }
+}
+
+/// Finite eigenvalues of the separately discretised adjoint, by decreasing real part.
+///
+/// # Errors
+/// As [`eigenvalues`], and where the model has no adjoint boundary conditions.
+pub fn adjoint_eigenvalues(problem: &Problem, k: f64) -> Result<Spectrum> {
+    let adjoint = problem.adjoint()?;
+    match (k == 0.0, problem.is_real()) {
+        (true, _) => Reduced::<f64>::new(problem.bordered_adjoint_pencil()?)?.eigenvalues(),
+        (false, true) => Reduced::<f64>::new(problem.pencil_of(adjoint, k))?.eigenvalues(),
+        (false, false) => Reduced::<C64>::new(problem.pencil_of(adjoint, k))?.eigenvalues(),
+    }
+}
+
+/// An eigenvalue with its right eigenvector.
+type Mode = (C64, Vec<C64>);
+
+/// Eigenvalues with right eigenvectors in the solver's basis, by decreasing real part.
+fn eigenvectors(problem: &Problem, k: f64) -> Result<(Spectrum, Vec<Mode>)> {
+    if problem.is_real() {
+        Reduced::<f64>::new(problem.pencil(k))?.eigenvectors()
+    } else {
+        Reduced::<C64>::new(problem.pencil(k))?.eigenvectors()
+    }
+}
+
+/// The leading mode.
+///
+/// # Errors
+/// A spectrum that cannot be computed, an eigenvalue that is not simple, or a mode that inverse iteration
+/// does not confirm.
+pub fn leading(problem: &Problem, k: f64) -> Result<EigenPair> {
+    let (spectrum, modes) = eigenvectors(problem, k)?;
+    let mode = modes.into_iter().next().ok_or_else(no_modes)?;
+    confirm(problem, k, &spectrum, mode)
+}
+
+/// The mode nearest to a given eigenvalue.
+///
+/// # Errors
+/// As [`leading`].
+pub fn nearest(problem: &Problem, k: f64, target: C64) -> Result<EigenPair> {
+    let (spectrum, modes) = eigenvectors(problem, k)?;
+    let best = modes
+        .into_iter()
+        .min_by(|a, b| (a.0 - target).norm().total_cmp(&(b.0 - target).norm()))
+        .ok_or_else(no_modes)?;
+    confirm(problem, k, &spectrum, best)
+}
+
+/// The continuation of a mode to another wavenumber or base state, by its shape.
+///
+/// # Errors
+/// Where no mode has a similar shape.
+pub fn follow(problem: &Problem, k: f64, near: &EigenPair) -> Result<EigenPair> {
+    if near.right.len() == problem.direct.layout.size
+        && let Some(pair) = iteration::continued(problem, k, near)
+        && likeness(&near.right, &pair.right) > SAME_SHAPE
+    {
+        return Ok(pair);
+    }
+    let (spectrum, modes) = eigenvectors(problem, k)?;
+    let mode = modes
+        .into_iter()
+        .max_by(|a, b| likeness(&near.right, &a.1).total_cmp(&likeness(&near.right, &b.1)))
+        .ok_or_else(no_modes)?;
+    let overlap = likeness(&near.right, &mode.1);
+    if overlap < SAME_SHAPE {
+        return Err(Error::computation(format!(
+            "the mode was lost at k = {k}: none has its shape (best overlap {overlap:.2}); try smaller steps"
+        )));
+    }
+    confirm(problem, k, &spectrum, mode)
+}
+
+/// The mode `pair` of one collocation found again on another, from its interpolated shape.
+///
+/// # Errors
+/// Where the other collocation has no such mode.
+pub fn transferred(from: &Problem, pair: &EigenPair, to: &Problem) -> Result<EigenPair> {
+    let (old, new) = (&from.direct.layout, &to.direct.layout);
+    let mut shape = vec![C64::new(0.0, 0.0); new.size];
+    for (a, b) in old.columns.iter().zip(&new.columns) {
+        let matrix = to.discretisation.matrix(a.grid, b.grid, 0);
+        for (i, value) in shape[b.offset..][..b.len].iter_mut().enumerate() {
+            *value = (0..a.len)
+                .map(|j| pair.right[a.offset + j] * matrix[(i, j)])
+                .sum();
+        }
+    }
+    let start = arbitrary(new.size);
+    let shift = beside(pair.c, pair.scale);
+    match refine(to, pair.k, shift, pair.scale, &shape, &start) {
+        Some(found) if likeness(&shape, &found.right) > SAME_SHAPE => Ok(found),
+        _ => nearest(to, pair.k, pair.c),
+    }
+}
+
+/// A vector that is orthogonal to none that matters.
+fn arbitrary(size: usize) -> Vec<C64> {
+    let entry = |i: usize| C64::new(1.0 + 0.37 * ((i * i) as f64).sin(), 0.0);
+    (0..size).map(entry).collect()
+}
+
+fn no_modes() -> Error {
+    Error::computation("the linear problem has no finite eigenvalue")
+}
+
+/// The mode after inverse iteration, where its eigenvalue is simple.
+fn confirm(problem: &Problem, k: f64, spectrum: &Spectrum, (c, right): Mode) -> Result<EigenPair> {
+    let scale = match spectrum.scale() {
+        0.0 => problem.rate(k),
+        scale => scale,
+    };
+    let gap = spectrum.gap(c);
+    if gap <= SIMPLE * c.norm().max(scale) {
+        return Err(Error::computation(format!(
+            "the eigenvalue {c:.6e} at k = {k} is not simple: another one lies {gap:.1e} from it, so that no \
+             single mode has an amplitude equation of its own; break the symmetry that makes them equal, or \
+             name another mode with --near"
+        )));
+    }
+    // The left vector comes from the iteration itself; any start that is not orthogonal will do.
+    let start = arbitrary(right.len());
+    refine(problem, k, beside(c, scale), scale, &right, &start).ok_or_else(|| {
+        let advice = if gap < 1e-3 * c.norm().max(scale) {
+            "it lies in a cluster of others, as those of a continuous spectrum do: another mode (--near) or a larger M"
+        } else {
+            "it is not resolved: a larger M"
+        };
+        Error::computation(format!(
+            "the eigenvalue {c:.6e} at k = {k} was not confirmed by inverse iteration, the next one being {gap:.1e} away; {advice}"
+        ))
+    })
+}
