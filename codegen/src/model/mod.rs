@@ -122,7 +122,8 @@ impl Interval {
     /// Whether the user gave an end a name, rather than a formula.
     pub fn named(&self, end: End) -> bool {
         let mut letters = self.written(end).chars();
-        letters.next().is_some_and(char::is_alphabetic)
+        self.written(end) != "pi"
+            && letters.next().is_some_and(char::is_alphabetic)
             && letters.all(|c| c.is_alphanumeric() || c == '_')
     }
 }

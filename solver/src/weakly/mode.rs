@@ -61,6 +61,34 @@ impl Mode {
         table
     }
 
+    /// What rounding can make of the jets, point by point, in units of the machine's precision:
+    /// Σ |D| |value| in place of D value.
+    pub fn rounding(
+        &self,
+        problem: &Problem,
+        k: f64,
+        jets: &[Jet],
+        grid: GridKind,
+    ) -> Vec<Vec<f64>> {
+        let mut table = vec![vec![0.0; jets.len()]; grid.count()];
+        for (position, &jet) in jets.iter().enumerate() {
+            let factor = self.symbol(k, jet).norm();
+            let Some(block) = problem.direct.layout.columns.get(usize::from(jet.field)) else {
+                continue;
+            };
+            let source = if jet.t == 0 { &self.values } else { &self.rate };
+            let order = usize::from(jet.y);
+            let matrix = problem.discretisation.matrix(block.grid, grid, order);
+            let scale = factor * problem.scale().powi(i32::from(jet.y));
+            for (j, value) in source[block.offset..][..block.len].iter().enumerate() {
+                for (row, d) in table.iter_mut().zip(matrix.col_as_slice(j)) {
+                    row[position] += scale * value.norm() * d.abs();
+                }
+            }
+        }
+        table
+    }
+
     /// One jet at the points of a grid.
     pub fn jet(&self, problem: &Problem, k: f64, jet: Jet, grid: GridKind) -> Vec<C64> {
         let factor = self.symbol(k, jet);

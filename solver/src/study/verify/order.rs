@@ -16,8 +16,10 @@ use crate::weakly::{Expansion, LandauPoint, Mode};
 const PHASES: usize = 12;
 /// Halvings of the amplitude.
 const HALVINGS: usize = 14;
-/// A defect counts while it stands this far above its floor.
+/// A defect counts while it stands this far above what the discretisation leaves, which is an estimate …
 const ABOVE_FLOOR: f64 = 300.0;
+/// … and this far above a bound of the rounding errors.
+const ABOVE_ROUNDING: f64 = 10.0;
 /// Halvings before a defect counts as falling by its leading power.
 const ASYMPTOTIC: usize = 2;
 /// The slope, within 2%.
@@ -91,13 +93,13 @@ pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
         .collect();
     let floor = |row: usize, i: usize| {
         let left = rest[row].value + linear[row] * amplitudes[i];
-        left.max(measured[i][row].rounding)
+        (ABOVE_FLOOR * left).max(ABOVE_ROUNDING * measured[i][row].rounding)
     };
     let mut least: Option<(f64, usize, usize)> = None;
     for row in 0..rest.len() {
         let clear = |i: &usize| {
             let value = measured[*i][row].value;
-            value > ABOVE_FLOOR * floor(row, *i) && value > 0.0
+            value > floor(row, *i) && value > 0.0
         };
         let Some(last) = (ASYMPTOTIC + 1..HALVINGS).rev().find(clear) else {
             continue;
@@ -164,11 +166,15 @@ fn start(expansion: &Expansion) -> f64 {
             let values = &expansion.modes[key].values[block.offset..][..block.len];
             values.iter().map(|v| v.norm()).fold(0.0, f64::max)
         };
-        let ratios = moving.iter().map(|block| {
+        // A field that the fundamental leaves alone but for rounding has no such ratio.
+        let first = expansion.modes[&(1, 1)].values.iter().map(|v| v.norm());
+        let least = 1e-10 * first.fold(0.0, f64::max);
+        let present = moving.iter().filter(|block| size(&(1, 1), block) > least);
+        let ratios = present.map(|block| {
             let later = keys.iter().map(|key| size(key, block)).fold(0.0, f64::max);
             later / size(&(1, 1), block)
         });
-        ratios.filter(|r| r.is_finite()).fold(0.0, f64::max)
+        ratios.fold(0.0, f64::max)
     };
     let (second, third) = (ratio([(0, 2), (2, 2)]), ratio([(1, 3), (3, 3)]));
     // The cubic term of the amplitude equation beside the slow rates.
@@ -253,23 +259,25 @@ fn residuals(
             harmonic,
             order,
             moving.jets(problem, expansion.k, jets, grid),
+            moving.rounding(problem, expansion.k, jets, grid),
         ));
     }
     let mut all = Vec::new();
     for phase in 0..PHASES {
         let theta = 2.0 * std::f64::consts::PI * (phase as f64 + 0.25) / PHASES as f64;
         for (i, point) in base.iter().enumerate() {
-            let mut x = base_jets(problem, point, jets);
-            for (harmonic, order, table) in &tables {
+            let base = base_jets(problem, point, jets);
+            let mut x: Vec<WithRounding> = base.into_iter().map(WithRounding::from).collect();
+            for (harmonic, order, table, rounding) in &tables {
                 let size = amplitude.powi(*order as i32);
                 let turn = C64::from_polar(1.0, *harmonic as f64 * theta);
                 // X[0;m] stands once, the others with their conjugates.
                 let weight = if *harmonic == 0 { size } else { 2.0 * size };
-                for (value, jet) in x.iter_mut().zip(table.at(i)) {
-                    *value += weight * (jet * turn).re;
+                for ((x, jet), size) in x.iter_mut().zip(table.at(i)).zip(&rounding[i]) {
+                    x.value += weight * (jet * turn).re;
+                    x.size += weight.abs() * size;
                 }
             }
-            let x: Vec<WithRounding> = x.into_iter().map(WithRounding::from).collect();
             let mut out = vec![WithRounding::from(0.0); count];
             problem
                 .model
