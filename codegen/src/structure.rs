@@ -213,6 +213,8 @@ structures! {
 pub enum ClosureKind {
     Conserved,
     Gauge,
+    /// A gauge with a time derivative: its multiplier is the rate at which the constant drifts.
+    Drift,
     Unknown,
 }
 
@@ -391,6 +393,7 @@ impl Literal for ClosureKind {
         match self {
             ClosureKind::Conserved => quote!(s::ClosureKind::Conserved),
             ClosureKind::Gauge => quote!(s::ClosureKind::Gauge),
+            ClosureKind::Drift => quote!(s::ClosureKind::Drift),
             ClosureKind::Unknown => quote!(s::ClosureKind::Unknown),
         }
     }

@@ -87,6 +87,10 @@ pub(super) fn derive(
             });
         }
     };
+    let problem = CaseProblem {
+        walls: &conditions,
+        ..problem
+    };
     let adjoint = adjoint_conditions(deriver, &problem, &walls, &rules, conditions.len());
     let closures = closure::derive(deriver, &problem, &walls, &rules, mistakes);
     Some(Case {

@@ -9,7 +9,7 @@ use super::form::Form;
 use super::linear::Term;
 use super::wall::{BaseRules, CaseProblem, Walls, at_end};
 use crate::diagnostic::Diagnostic;
-use crate::graph::{Graph, Id, Jet, Rational, Variable};
+use crate::graph::{Graph, Id, Jet, Node, Rational, Variable};
 use crate::model::Closure;
 use num_traits::One;
 
@@ -26,11 +26,23 @@ pub enum CaseClosure {
         field: usize,
         column: Vec<(usize, Id)>,
     },
+    /// The constant of a field with a time derivative is arbitrary, and may drift: ∫ field = 0, and the
+    /// multiplier, which enters where the time derivative does, is the rate of the drift.
+    Drift {
+        field: usize,
+        column: Vec<(usize, Id)>,
+    },
     /// The number `field` is unknown: ∫ density = 0.
     Unknown {
         field: usize,
         density: Vec<(Jet, Id)>,
     },
+}
+
+impl CaseClosure {
+    fn is_about(&self, other: &[(Jet, Id)]) -> bool {
+        matches!(self, CaseClosure::Conserved { density, .. } if density == other)
+    }
 }
 
 /// The closures of one case.
@@ -42,7 +54,7 @@ pub(super) fn derive(
     mistakes: &mut Vec<Diagnostic>,
 ) -> Vec<CaseClosure> {
     let model = deriver.model;
-    let mut closures = Vec::new();
+    let mut closures: Vec<CaseClosure> = Vec::new();
     // An integral that fixes the base is a candidate for a conserved one.
     let candidates = model
         .base
@@ -64,7 +76,9 @@ pub(super) fn derive(
         let Some(column) = multiplier(deriver, problem.linear, &density) else {
             continue;
         };
-        if conserved(deriver, problem, walls, rules, &column, &closures) {
+        // An integral of the base that is declared as conserved too is one closure.
+        let known = closures.iter().any(|c| c.is_about(&density));
+        if !known && conserved(deriver, problem, walls, rules, &column, &closures) {
             closures.push(CaseClosure::Conserved { density, column });
         }
     }
@@ -72,38 +86,11 @@ pub(super) fn derive(
         match closure {
             Closure::Conserved { .. } => {}
             Closure::Gauge { field, location } => {
-                let fixed = problem.linear.iter().find(|t| {
-                    usize::from(t.jet.field) == *field
-                        && t.jet.x == 0
-                        && t.jet.absx == 0
-                        && t.jet.y == 0
-                });
-                if let Some(term) = fixed {
-                    let name = &model.fields[*field].name;
-                    let message = format!(
-                        "`{name}` is no gauge: its value enters `{}`",
-                        model.balances[term.row].name
-                    );
-                    let expected = "a field of which only derivatives enter the balances";
-                    mistakes.push(Diagnostic::new(location.clone(), message, expected));
-                    continue;
-                }
-                let row = problem.pairing.iter().position(|f| f == field).unwrap_or(0);
-                let column = vec![(row, problem.divisors[row])];
-                if conserved(deriver, problem, walls, rules, &column, &[]) {
-                    closures.push(CaseClosure::Gauge {
-                        field: *field,
-                        column,
-                    });
-                } else {
-                    let name = &model.fields[*field].name;
-                    let message = format!(
-                        "the constant of `{name}` is not free: `{}` does not integrate to zero",
-                        model.balances[row].name
-                    );
-                    let expected =
-                        "a gauge whose balance is a divergence, without flux through the ends";
-                    mistakes.push(Diagnostic::new(location.clone(), message, expected));
+                match gauge(deriver, problem, walls, rules, *field) {
+                    Ok(closure) => closures.push(closure),
+                    Err((message, expected)) => {
+                        mistakes.push(Diagnostic::new(location.clone(), message, expected));
+                    }
                 }
             }
             Closure::Unknown { field, integral } => {
@@ -118,6 +105,96 @@ pub(super) fn derive(
         }
     }
     closures
+}
+
+/// The closure of a field of which only derivatives matter, or why it is none: message and expectation.
+fn gauge(
+    deriver: &mut Deriver,
+    problem: &CaseProblem,
+    walls: &Walls,
+    rules: &BaseRules,
+    field: usize,
+) -> Result<CaseClosure, (String, &'static str)> {
+    let model = deriver.model;
+    let name = &model.fields[field].name;
+    let valued = |form: &Form| form.terms.keys().flatten().any(|jet| *jet == Jet::value(field));
+    let balances = problem.balances.iter().zip(&model.balances);
+    let holder = balances
+        .filter(|(form, _)| valued(form))
+        .map(|(_, balance)| format!("`{}`", balance.name))
+        .next();
+    let wall = || problem.walls.iter().any(|w| valued(&w.form));
+    let holder = holder.or_else(|| wall().then(|| "a boundary condition".to_owned()));
+    if let Some(holder) = holder {
+        return Err((
+            format!("`{name}` is no gauge: its value enters {holder}"),
+            "a field of which only derivatives enter the balances",
+        ));
+    }
+    let mass: Vec<(usize, Id)> = problem
+        .linear
+        .iter()
+        .filter(|t| t.jet == Jet { t: 1, ..Jet::value(field) })
+        .map(|t| (t.row, t.coefficient))
+        .collect();
+    if !mass.is_empty() {
+        return Ok(CaseClosure::Drift {
+            field,
+            column: mass,
+        });
+    }
+    let paired = problem.pairing.iter().position(|f| *f == field).unwrap_or(0);
+    let others = (0..model.balances.len()).filter(|&row| row != paired);
+    for row in std::iter::once(paired).chain(others) {
+        for weight in null_candidates(deriver, problem, row) {
+            let column = vec![(row, weight)];
+            if conserved(deriver, problem, walls, rules, &column, &[]) {
+                return Ok(CaseClosure::Gauge { field, column });
+            }
+        }
+    }
+    Err((
+        format!(
+            "the constant of `{name}` is not free: `{}` does not integrate to zero",
+            model.balances[paired].name
+        ),
+        "a gauge whose balance is a divergence, without flux through the ends",
+    ))
+}
+
+/// Weights under which a balance may be a divergence: its divisor times powers of what its coefficients are
+/// divided by, such as r for ∂r u + u/r.
+fn null_candidates(deriver: &mut Deriver, problem: &CaseProblem, row: usize) -> Vec<Id> {
+    let graph = &mut *deriver.graph;
+    let mut bases: Vec<Id> = Vec::new();
+    let coefficients = problem.linear.iter().filter(|t| t.row == row && t.jet.t == 0);
+    for term in coefficients {
+        for node in graph.topological(&[term.coefficient]) {
+            match graph.node(node) {
+                Node::Product(factors) => bases.extend(factors.iter().map(|(base, _)| *base)),
+                Node::Base(..) | Node::BaseLaw(_) | Node::Coordinate => bases.push(node),
+                _ => {}
+            }
+        }
+    }
+    let varies = |graph: &Graph, id| {
+        graph.any(id, |n| {
+            matches!(n, Node::Base(..) | Node::BaseLaw(_) | Node::Coordinate)
+        })
+    };
+    bases.sort_unstable();
+    bases.dedup();
+    bases.retain(|&base| varies(graph, base));
+    let divisor = problem.divisors[row];
+    let mut candidates = vec![divisor];
+    for base in bases {
+        for exponent in [1, -1, 2, -2, 3, -3] {
+            let exponent = Rational::from_integer(exponent.into());
+            let parts = [(divisor, Rational::one()), (base, exponent)];
+            candidates.push(graph.product(parts));
+        }
+    }
+    candidates
 }
 
 /// The linear part at k = 0.
@@ -247,7 +324,7 @@ fn conserved(
         }
         image.push(total);
     }
-    let null = image.iter().all(|&id| deriver.graph.vanishes(id));
+    let null = image.iter().all(|&id| deriver.vanishes_opened(id));
     if !null
         && !known
             .iter()
@@ -280,7 +357,7 @@ fn conserved(
             }
             let total = deriver.graph.sum(parts);
             let total = at_end(deriver.graph, place, *end, rules, total);
-            if !deriver.graph.vanishes(total) {
+            if !deriver.vanishes_opened(total) {
                 return false;
             }
         }

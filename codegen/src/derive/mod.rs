@@ -180,6 +180,8 @@ impl<'a> Deriver<'a> {
         let mut cases = Vec::new();
         for choices in self.choices(&switches, mistakes)? {
             let problem = wall::CaseProblem {
+                balances: &balances,
+                walls: &[],
                 linear: &linear,
                 adjoint: &adjoint,
                 divisors: &divisors,
@@ -273,6 +275,17 @@ impl<'a> Deriver<'a> {
             Expander::new(0, &self.model.base.closed, &self.uniform, &self.dependence);
         let form = expander.expand(self.graph, id).ok()?;
         Some(form.base(self.graph))
+    }
+
+    /// Whether an expression of the base state vanishes, with its laws opaque or, where the base state is given
+    /// in closed form, by what they are.
+    pub fn vanishes_opened(&mut self, id: Id) -> bool {
+        if self.graph.vanishes(id) {
+            return true;
+        }
+        let (laws, closed) = (&self.model.laws, &self.model.base.closed);
+        let opened = Opener::new(laws, closed, &self.uniform).at_base(self.graph, id);
+        self.graph.vanishes(opened)
     }
 
     fn divisors(&mut self) -> Vec<Id> {

@@ -38,7 +38,12 @@ pub struct BaseCondition {
 }
 
 /// What a case is derived from.
+#[derive(Clone, Copy)]
 pub(super) struct CaseProblem<'a> {
+    /// The balances expanded, not divided.
+    pub balances: &'a [Form],
+    /// The conditions of this case.
+    pub walls: &'a [WallCondition],
     pub linear: &'a [Term],
     pub adjoint: &'a [Term],
     pub divisors: &'a [Id],

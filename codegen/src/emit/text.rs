@@ -308,6 +308,10 @@ impl<'a> Writer<'a> {
             CaseClosure::Gauge { field, .. } => {
                 Line::Words(format!("gauge: the constant of {}", self.fields()[*field]))
             }
+            CaseClosure::Drift { field, .. } => Line::Words(format!(
+                "gauge: the constant of {}, which may drift",
+                self.fields()[*field]
+            )),
             CaseClosure::Unknown { field, density } => {
                 let name = Label::Name(format!("unknown {}", self.fields()[*field]));
                 self.vanishes(name, &integral(density))

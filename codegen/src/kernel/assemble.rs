@@ -304,28 +304,21 @@ impl Assembler<'_> {
         let mut coefficients = Vec::new();
         let mut closures = Vec::new();
         for closure in &case.closures {
-            let (kind, field, density, column) = match closure {
-                CaseClosure::Conserved { density, column } => (
-                    ClosureKind::Conserved,
-                    None,
-                    density.clone(),
-                    column.clone(),
-                ),
-                CaseClosure::Gauge { field, column } => {
-                    let one = self.graph.one();
-                    (
-                        ClosureKind::Gauge,
-                        Some(*field),
-                        vec![(Jet::value(*field), one)],
-                        column.clone(),
-                    )
+            let one = self.graph.one();
+            let mean = |field: usize| vec![(Jet::value(field), one)];
+            let (kind, field, density, column) = match closure.clone() {
+                CaseClosure::Conserved { density, column } => {
+                    (ClosureKind::Conserved, None, density, column)
                 }
-                CaseClosure::Unknown { field, density } => (
-                    ClosureKind::Unknown,
-                    Some(*field),
-                    density.clone(),
-                    Vec::new(),
-                ),
+                CaseClosure::Gauge { field, column } => {
+                    (ClosureKind::Gauge, Some(field), mean(field), column)
+                }
+                CaseClosure::Drift { field, column } => {
+                    (ClosureKind::Drift, Some(field), mean(field), column)
+                }
+                CaseClosure::Unknown { field, density } => {
+                    (ClosureKind::Unknown, Some(field), density, Vec::new())
+                }
             };
             coefficients.extend(density.iter().map(|(_, id)| *id));
             coefficients.extend(column.iter().map(|(_, id)| *id));

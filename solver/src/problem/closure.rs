@@ -137,6 +137,7 @@ impl Closures<'_> {
         let kind = match info.kind {
             ClosureKind::Conserved => "conserved",
             ClosureKind::Gauge => "gauge",
+            ClosureKind::Drift => "drifting",
             ClosureKind::Unknown => "unknown",
         };
         format!("{kind} {}", named.join(" + "))

@@ -84,6 +84,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
                 harmonic: 1,
                 values,
                 rate,
+                drift: Vec::new(),
                 uniform: Vec::new(),
             },
         );
@@ -221,7 +222,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
                     closure: border.name.clone(),
                     order,
                     relative,
-                    vanishes: true,
+                    vanishes: border.kind != ClosureKind::Drift,
                 });
             }
         }
@@ -247,20 +248,30 @@ impl<'p, 'm> Expansion<'p, 'm> {
         }
         let n = self.problem.direct.layout.size;
         let profiles = self.problem.direct.layout.columns.len();
+        let mut drift = Vec::new();
         let mut uniform =
             vec![C64::new(0.0, 0.0); self.problem.structure().fields.len() - profiles];
         if harmonic == 0 {
             for (border, value) in self.problem.borders.iter().zip(&solution[n..]) {
-                if let (ClosureKind::Unknown, Some(field)) = (border.kind, border.field) {
-                    let turn = quarter_turn(self.problem.direct.column_turn(field));
-                    uniform[field - profiles] = value.complex() * turn;
+                let Some(field) = border.field else { continue };
+                let value = value.complex() * quarter_turn(self.problem.direct.column_turn(field));
+                match border.kind {
+                    ClosureKind::Unknown => uniform[field - profiles] = value,
+                    ClosureKind::Drift => {
+                        let block = &self.problem.direct.layout.columns[field];
+                        drift.resize(n, C64::new(0.0, 0.0));
+                        drift[block.offset..][..block.len].fill(value);
+                    }
+                    ClosureKind::Conserved | ClosureKind::Gauge => {}
                 }
             }
         }
+        rate.iter_mut().zip(&drift).for_each(|(r, d)| *r += d);
         Mode {
             harmonic: harmonic as i32,
             values,
             rate,
+            drift,
             uniform,
         }
     }

@@ -13,6 +13,8 @@ pub struct Mode {
     pub values: Vec<C64>,
     /// Coefficient of A^m e^{ikθ} in ∂t X.
     pub rate: Vec<C64>,
+    /// The part of it that is no multiple of a mode: constants that drift (mean modes alone; empty for none).
+    pub drift: Vec<C64>,
     /// Unknown numbers (mean modes alone), by field after the profiles.
     pub uniform: Vec<C64>,
 }
@@ -25,6 +27,7 @@ impl Mode {
             harmonic: -self.harmonic,
             values: conj(&self.values),
             rate: conj(&self.rate),
+            drift: conj(&self.drift),
             uniform: conj(&self.uniform),
         }
     }

@@ -10,7 +10,7 @@ use crate::collocation::{Grid, GridKind};
 use crate::error::Result;
 use crate::model::{C64, End, Jet, ResidualCall, ResidualId, WithRounding};
 use crate::problem::Problem;
-use crate::weakly::{Expansion, LandauPoint, Mode};
+use crate::weakly::{Expansion, LandauPoint};
 
 /// Phases of the fundamental at which the defect is sampled: enough for the harmonics of A⁴.
 const PHASES: usize = 12;
@@ -251,10 +251,10 @@ fn residuals(
     let mut tables = Vec::new();
     for (&(harmonic, order), mode) in &expansion.modes {
         let rate = instantaneous_rate(expansion, amplitude, harmonic, order);
-        let moving = Mode {
-            rate: mode.values.iter().map(|v| v * rate).collect(),
-            ..mode.clone()
-        };
+        let mut moving = mode.clone();
+        moving.rate = mode.values.iter().map(|v| v * rate).collect();
+        let drifting = moving.rate.iter_mut().zip(&mode.drift);
+        drifting.for_each(|(rate, drift)| *rate += drift);
         tables.push((
             harmonic,
             order,
