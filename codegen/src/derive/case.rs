@@ -1,7 +1,7 @@
 //! One case: the boundary conditions under one combination of the structural switches, the adjoint
 //! conditions that follow from them, and what closes the problem at k = 0.
 
-use super::Deriver;
+use super::{Deriver, regular};
 use super::boundary::{Combination, Simplifier, as_condition, conjugate, demands, reduce};
 use super::closure::{self, CaseClosure};
 use super::wall::{
@@ -248,7 +248,7 @@ fn adjoint_conditions(
     rules: &BaseRules,
     needed: usize,
 ) -> Result<Vec<AdjointCondition>, String> {
-    let mut found = Vec::new();
+    let mut rows: Vec<(End, Vec<Combination>)> = Vec::new();
     let mut reasons = Vec::new();
     for (end, direct) in &walls.reduced {
         let place = deriver.place(*end);
@@ -257,20 +257,31 @@ fn adjoint_conditions(
             at_end: &mut simplify,
         };
         let demanded = demands(deriver.graph, &walls.form, direct, &mut simplifier);
-        let mut rows = Vec::new();
+        let mut own = Vec::new();
         for (jet, combination) in &demanded {
-            rows.push(conjugate(deriver.graph, combination));
+            let mut coefficients = combination.values().flat_map(|symbol| symbol.values());
+            if coefficients.any(|&id| regular::divides_by_zero(deriver.graph, id)) {
+                return Err(singular_end(deriver, *end));
+            }
+            own.push(conjugate(deriver.graph, combination));
             reasons.push((*end, *jet, combination.clone()));
         }
-        let reduced = reduce(deriver.graph, rows, &mut simplifier)
-            .map_err(|_| "a condition on the adjoint field holds x-derivatives alone".to_owned())?;
-        for (jet, rule) in reduced.rules {
-            let combination = as_condition(deriver.graph, jet, &rule);
-            found.push(AdjointCondition {
-                end: *end,
-                combination,
-                balance: usize::from(jet.field),
-            });
+        rows.push((*end, own));
+    }
+    let mut found = solved(deriver, &rows, rules)?;
+    // A singular end asks for less: regularity stands in.
+    for index in 0..rows.len() {
+        let end = rows[index].0;
+        for condition in regular::conditions(deriver, problem.adjoint, end, rules) {
+            if found.len() >= needed {
+                break;
+            }
+            let mut longer = rows.clone();
+            longer[index].1.push(condition);
+            let more = solved(deriver, &longer, rules)?;
+            if more.len() > found.len() {
+                (rows, found) = (longer, more);
+            }
         }
     }
     if found.len() == needed {
@@ -284,6 +295,45 @@ fn adjoint_conditions(
         text += &describe_demand(deriver, problem, end, jet, &combination);
     }
     Err(text.trim_end_matches(',').to_owned())
+}
+
+/// The demands of both ends solved for the highest derivatives.
+fn solved(
+    deriver: &mut Deriver,
+    rows: &[(End, Vec<Combination>)],
+    rules: &BaseRules,
+) -> Result<Vec<AdjointCondition>, String> {
+    let mut found = Vec::new();
+    for (end, own) in rows {
+        let place = deriver.place(*end);
+        let mut simplify = |graph: &mut Graph, id| at_end(graph, place, *end, rules, id);
+        let mut simplifier = Simplifier {
+            at_end: &mut simplify,
+        };
+        let reduced = reduce(deriver.graph, own.clone(), &mut simplifier)
+            .map_err(|_| "a condition on the adjoint field holds x-derivatives alone".to_owned())?;
+        for (jet, rule) in reduced.rules {
+            found.push(AdjointCondition {
+                end: *end,
+                combination: as_condition(deriver.graph, jet, &rule),
+                balance: usize::from(jet.field),
+            });
+        }
+    }
+    Ok(found)
+}
+
+fn singular_end(deriver: &Deriver, end: End) -> String {
+    let interval = deriver.model.interval.as_ref();
+    let (name, place) = interval.map_or(("y", ""), |i| (i.name.as_str(), i.written(end)));
+    let distance = match place {
+        "0" => name.to_owned(),
+        _ => format!("({name} - {place})"),
+    };
+    format!(
+        "no adjoint boundary conditions at {name} = {place}: the coefficients of the balances are singular there; \
+         multiply each balance by {distance}, or the power of it by which it is divided"
+    )
 }
 
 /// ` at y = H: n' is free and asks for a condition on v†,`

@@ -14,6 +14,7 @@ mod offsets;
 mod open;
 mod pairing;
 mod parity;
+mod regular;
 mod wall;
 
 pub use base::BaseRow;
