@@ -3,6 +3,15 @@
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::ops::Range;
 
+/// Mistakes that are told one by one.
+const MOST_TOLD: usize = 20;
+/// Longer texts and source lines are cut in the middle.
+const LONGEST_TEXT: usize = 400;
+/// What is kept of a long source line on either side of the caret.
+const WINDOW: usize = 60;
+/// Names beyond this length are no slips of others.
+const LONGEST_NAME: usize = 64;
+
 /// A spec or law file as the user wrote it.
 #[derive(Clone, Debug)]
 pub struct SourceFile {
@@ -39,20 +48,19 @@ impl Diagnostic {
     ) -> Self {
         Diagnostic {
             location,
-            message: message.into(),
-            expected: expected.into(),
+            message: shortened(&message.into()),
+            expected: shortened(&expected.into()),
             hint: None,
         }
     }
 
-    pub fn hint(mut self, hint: impl Into<String>) -> Self {
-        self.hint = Some(hint.into());
-        self
+    pub fn hint(self, hint: impl Into<String>) -> Self {
+        self.maybe_hint(Some(hint.into()))
     }
 
     /// Like [`Diagnostic::hint`], for a hint that may be missing.
     pub fn maybe_hint(mut self, hint: Option<String>) -> Self {
-        self.hint = hint;
+        self.hint = hint.map(|text| shortened(&text));
         self
     }
 }
@@ -65,34 +73,69 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// `file:line:column` messages with source line, caret, expectation and hint.
+    /// `file:line:column` messages with source line, caret, expectation and hint; the first of many, and how
+    /// many there are more.
     pub fn render(&self) -> String {
-        let renderer = Renderer::plain();
         let mut list: Vec<&Diagnostic> = self.list.iter().collect();
         list.sort_by_key(|d| (d.location.file, d.location.range.start));
         list.dedup_by(|a, b| a.location == b.location && a.message == b.message);
         let mut text = String::new();
-        for diagnostic in list {
-            let file = &self.files[diagnostic.location.file];
-            let range = clamp(&file.text, &diagnostic.location.range);
-            let snippet = Snippet::source(file.text.as_str())
-                .path(file.path.as_str())
-                .annotation(
-                    AnnotationKind::Primary
-                        .span(range)
-                        .label(diagnostic.expected.as_str()),
-                );
-            let mut group = Level::ERROR
-                .primary_title(diagnostic.message.as_str())
-                .element(snippet);
-            if let Some(hint) = &diagnostic.hint {
-                group = group.element(Level::HELP.message(hint.as_str()));
-            }
-            text += &renderer.render(&[group]);
+        for diagnostic in list.iter().take(MOST_TOLD) {
+            text += &self.render_one(diagnostic);
             text += "\n\n";
+        }
+        if list.len() > MOST_TOLD {
+            text += &format!("and {} more mistakes\n\n", list.len() - MOST_TOLD);
         }
         text
     }
+
+    fn render_one(&self, diagnostic: &Diagnostic) -> String {
+        let file = &self.files[diagnostic.location.file];
+        let range = clamp(&file.text, &diagnostic.location.range);
+        // The lines of the place alone, so that a long file costs nothing.
+        let start = file.text[..range.start].rfind('\n').map_or(0, |at| at + 1);
+        let end = file.text[range.end..].find('\n').map_or(file.text.len(), |at| range.end + at);
+        let number = file.text[..start].matches('\n').count() + 1;
+        let lines = &file.text[start..end];
+        let mut own = range.start - start..range.end - start;
+        let mut path = file.path.clone();
+        let mut shown = lines.to_owned();
+        if lines.len() > LONGEST_TEXT {
+            // A place of its own in the path: the excerpt would have other columns.
+            let column = file.text[start..range.start].chars().count() + 1;
+            path = format!("{path}:{number}:{column}, in an excerpt");
+            let window = own.start.saturating_sub(WINDOW)..own.start + WINDOW;
+            let window = clamp(lines, &window);
+            shown = lines[window.clone()].replace('\n', " ");
+            own = own.start - window.start..(own.end - window.start).min(shown.len());
+        }
+        let snippet = Snippet::source(shown.as_str())
+            .path(path.as_str())
+            .line_start(number)
+            .annotation(
+                AnnotationKind::Primary
+                    .span(own)
+                    .label(diagnostic.expected.as_str()),
+            );
+        let mut group = Level::ERROR
+            .primary_title(diagnostic.message.as_str())
+            .element(snippet);
+        if let Some(hint) = &diagnostic.hint {
+            group = group.element(Level::HELP.message(hint.as_str()));
+        }
+        Renderer::plain().render(&[group])
+    }
+}
+
+/// A text of readable length, its middle left out if need be.
+fn shortened(text: &str) -> String {
+    if text.len() <= LONGEST_TEXT {
+        return text.to_owned();
+    }
+    let part = |range: Range<usize>| &text[clamp(text, &range)];
+    let side = LONGEST_TEXT / 2;
+    format!("{} … {}", part(0..side), part(text.len() - side..text.len()))
 }
 
 impl std::fmt::Display for Diagnostics {
@@ -119,8 +162,12 @@ fn clamp(text: &str, range: &Range<usize>) -> Range<usize> {
 
 /// The candidate nearest to `name`, if it is near enough to be a slip of the keyboard.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    if name.len() > LONGEST_NAME {
+        return None;
+    }
     candidates
         .into_iter()
+        .filter(|candidate| candidate.len() <= LONGEST_NAME)
         .map(|candidate| (distance(name, candidate), candidate))
         .filter(|&(d, candidate)| {
             d <= 1 + candidate.chars().count() / 4 && d < name.chars().count()

@@ -156,6 +156,8 @@ structures! {
         pub choices: Vec<usize>,
         /// [`KernelId::BaseConditions`]: residual, then its derivative by each jet.
         pub base_conditions: Vec<BaseConditionInfo>,
+        /// The ends of the conditions of [`ResidualId::BaseChecks`].
+        pub base_checks: Vec<End>,
         /// [`KernelId::Conditions`]: one coefficient a monomial.
         pub conditions: Vec<ConditionInfo>,
         /// [`KernelId::AdjointConditions`]: one coefficient a jet; or why there are none.
@@ -258,6 +260,8 @@ pub enum ResidualId {
     Balances,
     /// One value a boundary condition of a case, in the order of its conditions.
     Conditions(usize),
+    /// One value a condition that the base state of a case, being in closed form, has to meet.
+    BaseChecks(usize),
 }
 
 impl Structure {
@@ -269,6 +273,16 @@ impl Structure {
     /// Position of a base jet in the point state.
     pub fn base_position(&self, field: usize, order: usize) -> usize {
         2 + self.parameters.len() + field * (self.base_order + 1) + order
+    }
+
+    /// The value of a jet in the base state at a point: zero for one with ∂x or ∂t in it.
+    pub fn base_jet(&self, jet: Jet, point: &[f64]) -> f64 {
+        let order = usize::from(jet.y);
+        if jet.is_base() && order <= self.base_order {
+            point[self.base_position(usize::from(jet.field), order)]
+        } else {
+            0.0
+        }
     }
 
     /// Number of profiles among the fields.

@@ -26,6 +26,8 @@ pub struct Case {
     pub choices: Vec<usize>,
     pub conditions: Vec<WallCondition>,
     pub base_conditions: Vec<BaseCondition>,
+    /// Conditions that hold for fields of the base state in closed form: to be checked.
+    pub base_checks: Vec<(End, Id)>,
     /// The adjoint boundary conditions, or why there are none.
     pub adjoint: Result<Vec<AdjointCondition>, String>,
     pub closures: Vec<CaseClosure>,
@@ -73,6 +75,7 @@ pub(super) fn derive(
     }
     check_count(deriver, problem.needed, &conditions, &written, mistakes)?;
     let base_conditions = base_conditions(deriver, &problem, &written, &written_base, mistakes)?;
+    let base_checks = base_checks(deriver, &problem, &written, &written_base);
     let rules = base_rules(deriver.graph, &base_conditions);
     let walls = match walls(deriver, &problem, &conditions, &rules) {
         Ok(walls) => walls,
@@ -82,6 +85,7 @@ pub(super) fn derive(
                 choices,
                 conditions,
                 base_conditions,
+                base_checks,
                 adjoint,
                 closures: Vec::new(),
             });
@@ -97,6 +101,7 @@ pub(super) fn derive(
         choices,
         conditions,
         base_conditions,
+        base_checks,
         adjoint,
         closures,
     })
@@ -219,6 +224,43 @@ fn base_conditions(
         return None;
     }
     Some(found)
+}
+
+/// Conditions of the `base` block, and those of `boundary` that it does not replace, about fields that are all
+/// given in closed form.
+fn base_checks(
+    deriver: &mut Deriver,
+    problem: &CaseProblem,
+    written: &[&Condition],
+    written_base: &[&Condition],
+) -> Vec<(End, Id)> {
+    let fields = |graph: &Graph, id: Id| -> Vec<usize> {
+        let nodes = graph.topological(&[id]).into_iter();
+        let mut fields: Vec<usize> = nodes
+            .filter_map(|node| match graph.node(node) {
+                Node::Jet(jet) => Some(usize::from(jet.field)),
+                _ => None,
+            })
+            .collect();
+        fields.dedup();
+        fields
+    };
+    let mut found = Vec::new();
+    let own = written_base.iter().map(|c| (c, true));
+    for (condition, own) in own.chain(written.iter().map(|c| (c, false))) {
+        let named = fields(deriver.graph, condition.residual);
+        let replaced = written_base.iter().any(|other| {
+            other.end == condition.end
+                && fields(deriver.graph, other.residual).iter().any(|f| named.contains(f))
+        });
+        let solved = deriver.base_part(condition.residual).is_none_or(|base| {
+            base_fields(deriver, base).iter().any(|f| problem.solved.contains(f))
+        });
+        if !solved && (own || !replaced) {
+            found.push((condition.end, condition.residual));
+        }
+    }
+    found
 }
 
 /// Fields whose base values an expression holds (through laws too).

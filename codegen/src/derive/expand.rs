@@ -9,6 +9,12 @@ use crate::graph::{Function, Graph, Id, Jet, LawAtom, Node, Operator, Rational, 
 use num_traits::{One, Zero};
 use std::collections::HashMap;
 
+/// Products of terms that a model has use for, in one product of series.
+const MOST_PRODUCTS: usize = 1_000_000;
+
+/// Order of derivatives that a model has use for.
+const HIGHEST_DERIVATIVE: u8 = 64;
+
 /// Why an expression has no expansion.
 #[derive(Debug, Clone)]
 pub struct Inexpandable(pub String);
@@ -69,6 +75,9 @@ impl<'a> Expander<'a> {
                 let mut total = Form::constant(graph, one);
                 for (base, exponent) in factors {
                     let form = self.power(graph, base, &exponent)?;
+                    if total.terms.len() * form.terms.len() > MOST_PRODUCTS {
+                        return Err(Inexpandable("it has too many terms".into()));
+                    }
                     total = total.multiply(graph, &form, self.order);
                 }
                 Ok(total)
@@ -85,6 +94,12 @@ impl<'a> Expander<'a> {
             }
             Node::Derivative(operator, argument) => {
                 let form = self.expand(graph, argument)?;
+                let order = |j: &Jet| j.t.max(j.x).max(j.absx).max(j.y);
+                if form.terms.keys().flatten().any(|jet| order(jet) >= HIGHEST_DERIVATIVE) {
+                    return Err(Inexpandable(format!(
+                        "it holds a derivative beyond the order {HIGHEST_DERIVATIVE}"
+                    )));
+                }
                 if operator == Operator::AbsDx && form.highest_degree() > 1 {
                     return Err(Inexpandable("|∂x| of a nonlinear expression".into()));
                 }
@@ -122,6 +137,9 @@ impl<'a> Expander<'a> {
     /// (g⁰ + δ)^q = Σ_m binomial(q, m) g⁰^(q−m) δ^m
     fn power(&mut self, graph: &mut Graph, base: Id, exponent: &Rational) -> Expanded {
         let form = self.expand(graph, base)?;
+        if exponent.is_one() {
+            return Ok(form);
+        }
         let value = form.base(graph);
         if graph.is_zero(value) {
             let positive = exponent.is_integer() && *exponent > Rational::zero();

@@ -174,6 +174,10 @@ fn residual_name(id: ResidualId) -> (Ident, TokenStream) {
             format_ident!("residual_conditions_{case}"),
             quote!(Conditions(#case)),
         ),
+        ResidualId::BaseChecks(case) => (
+            format_ident!("residual_base_checks_{case}"),
+            quote!(BaseChecks(#case)),
+        ),
     }
 }
 

@@ -333,6 +333,7 @@ impl Assembler<'_> {
         CaseInfo {
             choices: case.choices.clone(),
             base_conditions,
+            base_checks: case.base_checks.iter().map(|(end, _)| *end).collect(),
             conditions,
             adjoint,
             closures,

@@ -123,6 +123,11 @@ impl Assembler<'_> {
                 opened.push(self.opener.at_state(self.graph, condition.residual));
             }
             residuals.push((ResidualId::Conditions(index), opened));
+            let mut opened = Vec::new();
+            for (_, residual) in &case.base_checks {
+                opened.push(self.opener.at_state(self.graph, *residual));
+            }
+            residuals.push((ResidualId::BaseChecks(index), opened));
         }
         residuals
     }

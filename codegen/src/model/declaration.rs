@@ -9,6 +9,8 @@ use crate::syntax::tree::*;
 
 /// More fields than any model needs (jets count them in a byte).
 const MOST_FIELDS: usize = 14;
+/// More parameters than any model needs.
+const MOST_PARAMETERS: usize = 500;
 
 pub(super) fn coordinate_names(
     tree: &ModelTree,
@@ -79,6 +81,14 @@ pub(super) fn interval(
 }
 
 pub(super) fn parameters(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
+    if let Some(surplus) = tree.parameters.get(MOST_PARAMETERS) {
+        mistakes.push(Diagnostic::new(
+            surplus.name.location.clone(),
+            format!("the model has {} parameters", tree.parameters.len()),
+            format!("at most {MOST_PARAMETERS}"),
+        ));
+        return;
+    }
     for item in &tree.parameters {
         keep(names.check_name(&item.name), mistakes);
         if names.parameters.iter().any(|p| p.name == item.name.text) {

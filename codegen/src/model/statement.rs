@@ -8,6 +8,9 @@ use crate::diagnostic::{Diagnostic, nearest};
 use crate::graph::{Jet, Node, Operator};
 use crate::syntax::tree::*;
 
+/// Mistakes after which no more are looked for.
+const MOST_MISTAKES: usize = 100;
+
 /// Collects mistakes and goes on.
 pub(super) fn keep<T>(result: Resolved<T>, mistakes: &mut Vec<Diagnostic>) -> Option<T> {
     result.map_err(|mistake| mistakes.push(mistake)).ok()
@@ -137,6 +140,10 @@ fn check_definitions(names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
     let definitions: Vec<Definition> = names.scopes[0].definitions.values().cloned().collect();
     let kept = names.graph.clone();
     for definition in &definitions {
+        // So many mistakes have one cause.
+        if mistakes.len() >= MOST_MISTAKES {
+            break;
+        }
         let count = definition.arguments.as_deref().unwrap_or_default().len();
         let stand_in = names.graph.jet(Jet::value(0));
         let place = definition.name.location.clone();

@@ -13,8 +13,13 @@ use syn::parse::ParseStream;
 
 type Parsed<T> = Result<T, Diagnostic>;
 
-/// Decimal exponents beyond this are typing errors.
-const LARGEST_EXPONENT: u32 = 400;
+/// Decimal exponents beyond this are out of the range of double precision.
+const LARGEST_EXPONENT: i32 = 307;
+/// Terms of one sum, factors of one product, signs before one factor.
+const MOST_PARTS: usize = 2000;
+const MOST_SIGNS: usize = 64;
+/// Characters of a number.
+const LONGEST_NUMBER: usize = 320;
 
 impl Reader {
     /// formula := sum ('=' sum)?
@@ -40,7 +45,7 @@ impl Reader {
     /// sum := product (('+' | '-') product)*
     pub(super) fn expression(&self, input: ParseStream) -> Parsed<Expression> {
         let mut left = self.product(input)?;
-        loop {
+        for _ in 0..MOST_PARTS {
             let operator = if input.peek(Token![+]) {
                 Binary::Add
             } else if input.peek(Token![-]) {
@@ -51,12 +56,19 @@ impl Reader {
             self.skip(input);
             left = binary(operator, left, self.product(input)?);
         }
+        Err(self.too_long(input))
+    }
+
+    fn too_long(&self, input: ParseStream) -> Diagnostic {
+        let message = "the expression is too long";
+        let expected = format!("at most {MOST_PARTS} terms or factors");
+        Diagnostic::new(self.here(input), message, expected)
     }
 
     /// product := unary (('*' | '/') unary)*
     fn product(&self, input: ParseStream) -> Parsed<Expression> {
         let mut left = self.unary(input)?;
-        loop {
+        for _ in 0..MOST_PARTS {
             let operator = if input.peek(Token![*]) {
                 Binary::Multiply
             } else if input.peek(Token![/]) {
@@ -67,12 +79,16 @@ impl Reader {
             self.skip(input);
             left = binary(operator, left, self.unary(input)?);
         }
+        Err(self.too_long(input))
     }
 
     /// unary := '-'* power
     fn unary(&self, input: ParseStream) -> Parsed<Expression> {
         let mut signs = Vec::new();
         while input.peek(Token![-]) || input.peek(Token![+]) {
+            if signs.len() == MOST_SIGNS {
+                return Err(self.unexpected(input, "a number, a name or `(`"));
+            }
             signs.push((input.peek(Token![-]), self.here(input)));
             self.skip(input);
         }
@@ -91,24 +107,32 @@ impl Reader {
 
     /// power := primary ('^' '-'? power)?
     fn power(&self, input: ParseStream) -> Parsed<Expression> {
-        let base = self.primary(input)?;
-        if !input.peek(Token![^]) {
-            return Ok(base);
-        }
-        self.skip(input);
-        let exponent = if input.peek(Token![-]) {
-            let place = self.here(input);
-            self.skip(input);
-            let inner = self.power(input)?;
-            let location = spaced(&place, &inner.location);
-            Expression {
-                kind: ExpressionKind::Negative(Box::new(inner)),
-                location,
+        let mut bases = Vec::new();
+        let mut value = self.primary(input)?;
+        while input.peek(Token![^]) {
+            if bases.len() == MOST_SIGNS {
+                return Err(self.too_long(input));
             }
-        } else {
-            self.power(input)?
-        };
-        Ok(binary(Binary::Power, base, exponent))
+            self.skip(input);
+            let minus = input.peek(Token![-]).then(|| self.here(input));
+            if minus.is_some() {
+                self.skip(input);
+            }
+            bases.push((value, minus));
+            value = self.primary(input)?;
+        }
+        // Powers bind to the right.
+        for (base, minus) in bases.into_iter().rev() {
+            if let Some(place) = minus {
+                let location = spaced(&place, &value.location);
+                value = Expression {
+                    kind: ExpressionKind::Negative(Box::new(value)),
+                    location,
+                };
+            }
+            value = binary(Binary::Power, base, value);
+        }
+        Ok(value)
     }
 
     fn primary(&self, input: ParseStream) -> Parsed<Expression> {
@@ -216,7 +240,7 @@ impl Reader {
                 Err(Diagnostic::new(
                     location,
                     message,
-                    "a decimal exponent of at most 400",
+                    "a number from 1e-307 to 1e307 with at most 300 digits",
                 ))
             }
         }
@@ -229,20 +253,28 @@ fn binary(operator: Binary, left: Expression, right: Expression) -> Expression {
     Expression { kind, location }
 }
 
-/// The exact rational value of a decimal literal.
+/// The exact rational value of a decimal literal that double precision has room for.
 fn decimal(digits: &str) -> Option<Rational> {
+    if digits.len() > LONGEST_NUMBER {
+        return None;
+    }
     let (mantissa, exponent) = match digits.split_once(['e', 'E']) {
         Some((mantissa, exponent)) => (mantissa, exponent.parse::<i32>().ok()?),
         None => (digits, 0),
     };
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    let shift = exponent - i32::try_from(fraction.len()).ok()?;
-    if shift.unsigned_abs() > LARGEST_EXPONENT || whole.len() > LARGEST_EXPONENT as usize {
-        return None;
-    }
     let value: Rational = format!("{whole}{fraction}").parse().ok()?;
     if value.is_zero() {
         return Some(value);
+    }
+    let shift = exponent.checked_sub(i32::try_from(fraction.len()).ok()?)?;
+    let leading = whole.trim_start_matches('0');
+    let size = match leading.len() {
+        0 => exponent - (fraction.len() - fraction.trim_start_matches('0').len()) as i32,
+        length => exponent.checked_add(length as i32)?,
+    };
+    if size.abs() > LARGEST_EXPONENT {
+        return None;
     }
     Some(value * Rational::from_integer(10.into()).pow(shift))
 }

@@ -9,6 +9,9 @@ use crate::diagnostic::{Diagnostic, Location};
 const DEEPEST_NESTING: usize = 64;
 /// Longer than any model needs.
 const LARGEST_FILE: usize = 1 << 20;
+const LONGEST_NUMBER: usize = 320;
+/// Mistakes after which the text is looked at no further.
+const MOST_MISTAKES: usize = 200;
 
 /// Characters that people write in formulas and Rust's lexer does not know.
 const FOREIGN: [(char, &str); 12] = [
@@ -49,6 +52,9 @@ pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
     let mut open: Vec<(usize, char)> = Vec::new();
     let mut characters = text.char_indices().peekable();
     while let Some((position, character)) = characters.next() {
+        if found.len() >= MOST_MISTAKES {
+            return found;
+        }
         match character {
             '/' if characters.peek().is_some_and(|&(_, c)| c == '/') => {
                 while characters.next_if(|&(_, c)| c != '\n').is_some() {}
@@ -80,6 +86,18 @@ pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
                 if !closed {
                     let message = "this text is never closed";
                     found.push(Diagnostic::new(at(position, 1), message, "a closing `\"`"));
+                }
+            }
+            // Longer runs of digits are slow to read for what comes after.
+            _ if character.is_ascii_digit() => {
+                let mut length = 1;
+                while characters.next_if(|&(_, c)| c.is_ascii_alphanumeric()).is_some() {
+                    length += 1;
+                }
+                if length > LONGEST_NUMBER {
+                    let message = format!("a number of {length} characters");
+                    let expected = format!("at most {LONGEST_NUMBER}");
+                    found.push(Diagnostic::new(at(position, 1), message, expected));
                 }
             }
             '(' | '[' | '{' => {

@@ -16,6 +16,9 @@ use syn::ext::IdentExt;
 use syn::parse::{ParseBuffer, ParseStream, Parser};
 use tree::{Formula, LawTree, ModelTree, Name};
 
+/// Mistakes after which a file is read no further.
+const MOST_MISTAKES: usize = 200;
+
 /// Parses a `.model` file; `file` is its index in the list of sources.
 pub fn parse_model(file: usize, text: &str) -> (ModelTree, Vec<Diagnostic>) {
     parse(file, text, Reader::model)
@@ -87,7 +90,15 @@ type Parsed<T> = Result<T, Diagnostic>;
 
 impl Reader {
     fn report(&self, mistake: Diagnostic) {
-        self.mistakes.borrow_mut().push(mistake);
+        let mut mistakes = self.mistakes.borrow_mut();
+        if mistakes.len() < MOST_MISTAKES {
+            mistakes.push(mistake);
+        }
+    }
+
+    /// Whether a file is so broken that reading on is of no use.
+    fn has_given_up(&self) -> bool {
+        self.mistakes.borrow().len() >= MOST_MISTAKES
     }
 
     fn location(&self, span: proc_macro2::Span) -> Location {
@@ -262,6 +273,9 @@ impl Reader {
     /// Reads statements until the block ends, going on after each mistake.
     fn statements(&self, input: ParseStream, mut statement: impl FnMut(ParseStream) -> Parsed<()>) {
         while !input.is_empty() {
+            if self.has_given_up() {
+                return self.drain(input);
+            }
             let before = input.cursor();
             if let Err(mistake) = statement(input) {
                 self.report(mistake);

@@ -98,6 +98,7 @@ fn fixed(
         )));
     }
     state.check_ranges(model, tail)?;
+    state.check_closed(model)?;
     Ok(state)
 }
 

@@ -2,11 +2,72 @@
 
 use crate::collocation::{Stretch, derivative_values};
 use crate::error::{Error, Result};
-use crate::model::{End, KernelId, Model, evaluate};
+use crate::model::{
+    End, KernelId, Model, ResidualCall, ResidualId, WithRounding, evaluate,
+};
 use crate::parameters::Parameters;
 
 /// Places at which a closed base state is checked against its balances.
 const CHECKS: usize = 7;
+
+/// What a closed form leaves of a balance or a condition, relative to the terms it is made of.
+const TOLERANCE: f64 = 1e-9;
+
+/// The worst residual met.
+#[derive(Default)]
+struct Leftover {
+    /// Size over what is allowed.
+    excess: f64,
+    value: f64,
+    of: String,
+    place: f64,
+}
+
+impl Leftover {
+    fn add(&mut self, residual: WithRounding, of: impl Fn() -> String, place: f64) {
+        let allowed = TOLERANCE * residual.size;
+        let excess = match residual.value == 0.0 {
+            true => 0.0,
+            false => residual.value.abs() / allowed,
+        };
+        // What is no number is worse than any.
+        let excess = if excess.is_nan() { f64::INFINITY } else { excess };
+        if excess > self.excess {
+            *self = Leftover {
+                excess,
+                value: residual.value,
+                of: of(),
+                place,
+            };
+        }
+    }
+}
+
+/// The unexpanded residuals at the base state, whose jets are as large as `sizes` somewhere.
+fn residual(
+    model: &dyn Model,
+    id: ResidualId,
+    point: &[f64],
+    sizes: &[f64],
+) -> Vec<WithRounding> {
+    let structure = model.structure();
+    let count = match id {
+        ResidualId::Balances => structure.balances.len(),
+        ResidualId::Conditions(case) => structure.cases[case].conditions.len(),
+        ResidualId::BaseChecks(case) => structure.cases[case].base_checks.len(),
+    };
+    let jets = structure.residual_jets.iter().zip(sizes);
+    let jets: Vec<WithRounding> = jets
+        .map(|(jet, &size)| {
+            let value = structure.base_jet(*jet, point);
+            let size = size.max(value.abs());
+            WithRounding { value, size }
+        })
+        .collect();
+    let mut values = vec![WithRounding::from(0.0); count];
+    model.residual(id, point, ResidualCall::Rounding(&jets, &mut values));
+    values
+}
 
 /// X⁰(y), evaluated to any derivative that kernels ask for.
 #[derive(Clone, Debug)]
@@ -141,28 +202,52 @@ impl BaseState {
         thinnest.1
     }
 
-    /// A closed base has to satisfy the balances that do not vanish identically.
+    /// A base in closed form has to satisfy the balances, and what is given of it its wall conditions.
+    ///
+    /// # Errors
+    /// Names what is left of the worst of them, and where.
     pub(super) fn check_closed(&self, model: &dyn Model) -> Result<()> {
         let structure = model.structure();
-        for check in 0..CHECKS {
-            let xi = -1.0 + 2.0 * (check as f64 + 0.5) / CHECKS as f64;
-            let point = self.point(model, xi, 0.0);
-            let values = evaluate(model, KernelId::Base, &point);
-            let mut position = 0;
-            for row in &structure.base.rows {
-                let residual = values[position];
-                position += 1 + row.jets.len();
-                if residual.is_nan() || residual.abs() >= 1e-9 {
-                    return Err(Error::computation(format!(
-                        "the base state does not satisfy the balance `{}`: residual {residual:.3e} at {} = {}",
-                        structure.balances[row.balance],
-                        structure.coordinate.as_deref().unwrap_or("y"),
-                        point[0]
-                    )));
+        let mut worst = Leftover::default();
+        let place = |check: usize| -1.0 + 2.0 * (check as f64 + 0.5) / CHECKS as f64;
+        let points: Vec<_> = (0..CHECKS)
+            .map(|check| self.point(model, place(check), 0.0))
+            .collect();
+        // What a closed form cancels does not show in its value: each jet is as uncertain as at its largest.
+        let sizes: Vec<f64> = structure
+            .residual_jets
+            .iter()
+            .map(|jet| {
+                let values = points.iter().map(|p| structure.base_jet(*jet, p).abs());
+                values.fold(0.0, f64::max)
+            })
+            .collect();
+        if structure.base.solved.is_empty() {
+            for point in &points {
+                let values = residual(model, ResidualId::Balances, point, &sizes);
+                for (name, value) in structure.balances.iter().zip(values) {
+                    worst.add(value, || format!("the balance `{name}`"), point[0]);
                 }
             }
         }
-        Ok(())
+        let checks = &structure.cases[self.case].base_checks;
+        for end in End::BOTH.into_iter().filter(|end| checks.contains(end)) {
+            let point = self.at_end(model, end);
+            let values = residual(model, ResidualId::BaseChecks(self.case), &point, &sizes);
+            for (value, _) in values.into_iter().zip(checks).filter(|(_, at)| **at == end) {
+                worst.add(value, || "its own condition".to_owned(), point[0]);
+            }
+        }
+        if worst.excess <= 1.0 {
+            return Ok(());
+        }
+        Err(Error::computation(format!(
+            "the base state does not satisfy {}: residual {:.3e} at {} = {}",
+            worst.of,
+            worst.value,
+            structure.coordinate.as_deref().unwrap_or("y"),
+            worst.place
+        )))
     }
 
     /// Fields must stay in the ranges that the spec declares, but for the truncation error.

@@ -2,8 +2,9 @@
 
 use super::arguments::{Format, OperatorName};
 use crate::error::{Error, Result};
-use crate::model::Model;
+use crate::model::{Model, TapeModel};
 use crate::reproduce::{Errata, Formulas, all_explained};
+use crate::study::Setup;
 use landau_codegen::Sources;
 use landau_codegen::build::read_sources;
 use landau_codegen::derive::Derivation;
@@ -44,18 +45,49 @@ pub fn models(models: &[Box<dyn Model>], json: bool) -> Result<()> {
 pub fn check(file: &Path) -> Result<()> {
     let sources = read_sources(file)
         .map_err(|e| Error::input(format!("{} cannot be read: {e}", file.display())))?;
-    match generate(&sources) {
-        Ok((derivation, _)) => {
-            let fields = derivation.model.field_names().join(", ");
-            say!(
-                "{}: the model `{}` in {fields} is well formed",
-                file.display(),
-                derivation.model.name
-            );
-            Ok(())
-        }
-        Err(mistakes) => Err(Error::input(format!("the spec has mistakes\n\n{mistakes}"))),
+    let model = TapeModel::new(&sources)
+        .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
+    check_closed_base(&model)?;
+    let structure = model.structure();
+    let fields: Vec<&str> = structure.fields.iter().map(|f| f.name.as_str()).collect();
+    say!(
+        "{}: the model `{}` in {} is well formed",
+        file.display(),
+        structure.name,
+        fields.join(", ")
+    );
+    Ok(())
+}
+
+/// Relative distances from the defaults at which a base state in closed form is tried.
+const SAMPLES: [f64; 3] = [0.0, 0.0732, -0.0568];
+
+/// A base state in closed form has to solve its balances at any parameters.
+fn check_closed_base(model: &dyn Model) -> Result<()> {
+    let structure = model.structure();
+    if !structure.base.solved.is_empty() {
+        return Ok(());
     }
+    for sample in SAMPLES {
+        let mut setup = Setup::new(model, 8);
+        let mut shown = Vec::new();
+        for (index, info) in structure.parameters.iter().enumerate() {
+            // Each by its own part, so that nothing cancels.
+            let moved = info.default * (1.0 + sample * (1.0 + 0.37 * index as f64).sin());
+            if info.choices.is_empty() && moved >= info.lower && moved <= info.upper {
+                setup.parameters.values[index] = moved;
+                shown.push(format!("{} = {moved}", info.name));
+            }
+        }
+        let place = match sample {
+            0.0 => "the default parameters".to_owned(),
+            _ => shown.join(", "),
+        };
+        setup
+            .base(None)
+            .map_err(|error| Error::input(format!("at {place}: {error}")))?;
+    }
+    Ok(())
 }
 
 pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format) -> Result<()> {

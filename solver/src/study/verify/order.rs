@@ -302,15 +302,6 @@ fn instantaneous_rate(expansion: &Expansion, amplitude: f64, harmonic: usize, or
 /// The base state in the jets of the residual.
 pub(super) fn base_jets(problem: &Problem, point: &[f64], jets: &[Jet]) -> Vec<f64> {
     let structure = problem.structure();
-    jets.iter()
-        .map(|jet| {
-            let order = usize::from(jet.y);
-            let field = usize::from(jet.field);
-            if jet.is_base() && order <= structure.base_order {
-                point[structure.base_position(field, order)]
-            } else {
-                0.0
-            }
-        })
-        .collect()
+    let value = |jet: &Jet| structure.base_jet(*jet, point);
+    jets.iter().map(value).collect()
 }
