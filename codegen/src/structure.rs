@@ -76,8 +76,16 @@ structures! {
         pub cases: Vec<CaseInfo>,
         pub amplitude: AmplitudeInfo,
         pub outputs: Vec<OutputInfo>,
+        pub typical: Option<TypicalInfo>,
         /// Operations of all kernels as written, and after common subexpressions are shared.
         pub operations: Vec<usize>,
+    }
+
+    /// A wavenumber that shows what the model is about.
+    pub struct TypicalInfo {
+        pub k: f64,
+        /// Real and imaginary part of the eigenvalue that its mode is near to; empty for the leading one.
+        pub near: Vec<f64>,
     }
 
     pub struct FieldInfo {

@@ -193,6 +193,10 @@ impl Assembler<'_> {
             cases,
             amplitude,
             outputs,
+            typical: model.typical.map(|typical| TypicalInfo {
+                k: typical.k,
+                near: typical.near.map_or(Vec::new(), |near| near.to_vec()),
+            }),
             operations: Vec::new(),
         }
     }

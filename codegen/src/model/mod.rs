@@ -44,6 +44,8 @@ pub struct Model {
     pub mean: Vec<Closure>,
     pub amplitude: Amplitude,
     pub outputs: Vec<Output>,
+    /// Where the model does what it is there for.
+    pub typical: Option<Typical>,
     /// The text of every file that was read; the spec first.
     pub sources: Vec<crate::diagnostic::SourceFile>,
     /// What its names stand for, for formulas that are read later; without the graph.
@@ -94,6 +96,13 @@ impl Lettering {
             notation,
         }
     }
+}
+
+/// A wavenumber that shows what a model is about, and the eigenvalue that its mode is near to.
+#[derive(Clone, Copy, Debug)]
+pub struct Typical {
+    pub k: f64,
+    pub near: Option<[f64; 2]>,
 }
 
 /// The cross-stream coordinate.

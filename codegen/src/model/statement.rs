@@ -68,6 +68,10 @@ pub(super) fn model(
         .iter()
         .filter_map(|o| keep(output(o, names), mistakes))
         .collect();
+    let typical = tree
+        .typical
+        .as_ref()
+        .and_then(|item| keep(typical(item, names), mistakes));
     check_definitions(names, mistakes);
     mistakes.append(&mut names.further);
     // What a broken statement would have used is not known.
@@ -97,6 +101,7 @@ pub(super) fn model(
         mean,
         amplitude: amplitude?,
         outputs,
+        typical,
         sources: names.files.clone(),
         graph: std::mem::take(&mut names.graph),
         names: std::mem::replace(names, Names::new()),
@@ -398,6 +403,23 @@ fn mean(item: &MeanItem, names: &mut Names) -> Resolved<Closure> {
             integral: integral(condition, names)?,
         },
     })
+}
+
+fn typical(item: &TypicalItem, names: &mut Names) -> Resolved<Typical> {
+    let k = names.constant(&item.k)?;
+    if k <= 0.0 {
+        let message = "this is not a wavenumber";
+        let place = item.k.location.clone();
+        return Err(Diagnostic::new(place, message, "a positive number"));
+    }
+    let near = match &item.near {
+        None => None,
+        Some((real, imaginary)) => Some([
+            names.constant(real)?,
+            imaginary.as_ref().map_or(Ok(0.0), |i| names.constant(i))?,
+        ]),
+    };
+    Ok(Typical { k, near })
 }
 
 fn output(item: &OutputItem, names: &mut Names) -> Resolved<Output> {

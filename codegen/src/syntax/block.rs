@@ -1,4 +1,4 @@
-//! The blocks of a spec that say what holds where: base, boundary, mean, amplitude, outputs.
+//! The blocks of a spec that say what holds where: base, boundary, mean, amplitude, outputs, typical.
 
 use super::item::unknown_item;
 use super::tree::*;
@@ -170,6 +170,32 @@ impl Reader {
             place: None,
             field,
             value,
+        })
+    }
+
+    /// `k = number; near = re, im;`, the second optional.
+    pub(super) fn typical(&self, input: ParseStream) -> Parsed<TypicalItem> {
+        self.word(input, "k")?;
+        self.punctuation(input, "=")?;
+        let k = self.expression(input)?;
+        self.end_of_statement(input)?;
+        if input.is_empty() {
+            return Ok(TypicalItem { k, near: None });
+        }
+        self.word(input, "near")?;
+        self.punctuation(input, "=")?;
+        let real = self.expression(input)?;
+        let imaginary = match self.peek_punctuation(input, ",") {
+            true => {
+                self.punctuation(input, ",")?;
+                Some(self.expression(input)?)
+            }
+            false => None,
+        };
+        self.end_of_statement(input)?;
+        Ok(TypicalItem {
+            k,
+            near: Some((real, imaginary)),
         })
     }
 

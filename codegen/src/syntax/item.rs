@@ -6,7 +6,7 @@ use crate::diagnostic::{Diagnostic, Location, nearest};
 use syn::Token;
 use syn::parse::ParseStream;
 
-const MODEL_ITEMS: [&str; 12] = [
+const MODEL_ITEMS: [&str; 13] = [
     "model",
     "use",
     "coordinates",
@@ -19,6 +19,7 @@ const MODEL_ITEMS: [&str; 12] = [
     "boundary",
     "amplitude",
     "outputs",
+    "typical",
 ];
 const MEAN: &str = "mean";
 const LAW_ITEMS: [&str; 4] = ["use", "parameters", "let", "law"];
@@ -75,6 +76,11 @@ impl Reader {
             "outputs" => self.block(input, |input| {
                 self.output(input).map(|item| tree.outputs.push(item))
             }),
+            "typical" => {
+                let content = self.braced(input)?;
+                tree.typical = Some(self.typical(&content)?);
+                self.finished(&content, "`}`")
+            }
             other => {
                 let mut items = MODEL_ITEMS.to_vec();
                 items.push(MEAN);

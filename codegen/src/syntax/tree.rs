@@ -71,6 +71,14 @@ pub struct ModelTree {
     pub mean: Vec<MeanItem>,
     pub amplitude: Option<AmplitudeItem>,
     pub outputs: Vec<OutputItem>,
+    pub typical: Option<TypicalItem>,
+}
+
+/// `typical { k = number; near = re, im; }`
+#[derive(Clone, Debug)]
+pub struct TypicalItem {
+    pub k: Expression,
+    pub near: Option<(Expression, Option<Expression>)>,
 }
 
 /// A parsed `.law` file.

@@ -55,9 +55,9 @@ pub enum Command {
     Spectrum {
         /// A built model, or the path of a .model file.
         model: String,
-        /// Wavenumber.
+        /// Wavenumber; the model's typical one by default.
         #[arg(long, allow_negative_numbers = true)]
-        k: f64,
+        k: Option<f64>,
         #[command(flatten)]
         common: Common,
     },
@@ -68,9 +68,9 @@ pub enum Command {
     Point {
         /// A built model, or the path of a .model file.
         model: String,
-        /// Wavenumber.
+        /// Wavenumber; the model's typical one by default.
         #[arg(long, allow_negative_numbers = true)]
-        k: f64,
+        k: Option<f64>,
         /// Order of the expansion: 3 gives c2.
         #[arg(long, default_value_t = 3)]
         order: usize,
@@ -132,9 +132,9 @@ pub enum Command {
     Verify {
         /// A built model, or the path of a .model file.
         model: String,
-        /// Wavenumber.
-        #[arg(long, allow_negative_numbers = true, default_value_t = 1.0)]
-        k: f64,
+        /// Wavenumber; the model's typical one by default.
+        #[arg(long, allow_negative_numbers = true)]
+        k: Option<f64>,
         #[command(flatten)]
         common: Common,
     },
@@ -198,9 +198,9 @@ pub struct SweepOptions {
 
 #[derive(Args)]
 pub struct PatternOptions {
-    /// Wavenumber.
+    /// Wavenumber; the model's typical one by default.
     #[arg(long, allow_negative_numbers = true)]
-    pub k: f64,
+    pub k: Option<f64>,
     /// A; the equilibrium amplitude by default.
     #[arg(long, value_name = "A", allow_negative_numbers = true)]
     pub amplitude: Option<f64>,

@@ -1,7 +1,7 @@
 //! The command `pattern`: pictures and data of the fields over the plane.
 
 use super::arguments::{Common, PatternOptions};
-use super::solve::selection;
+use super::solve::asked;
 use crate::data::FORMATS;
 use crate::data::plane::{attributes, dataset};
 use crate::error::{Error, Result};
@@ -12,7 +12,8 @@ use crate::weakly::{Pattern, Window, pattern as expand};
 use serde_json::json;
 
 pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Result<()> {
-    check_wavenumber(options.k)?;
+    let (k, selection) = asked(setup, options.k, common)?;
+    check_wavenumber(k)?;
     let window = window(options)?;
     for path in &options.out {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
@@ -25,7 +26,7 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
         }
     }
     let state = setup.base(None)?;
-    setup.with_point(&state, options.k, selection(common), |point| {
+    setup.with_point(&state, k, selection, |point| {
         let amplitude = match (options.amplitude, point.amplitude()) {
             (Some(given), _) if given.is_finite() => given,
             (Some(given), _) => {
@@ -42,7 +43,7 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
             }
         };
         let found = expand(point, amplitude, window)?;
-        let attributes = attributes(setup, &state.parameters, options.k, amplitude);
+        let attributes = attributes(setup, &state.parameters, k, amplitude);
         for path in &options.out {
             if path.extension().is_some_and(|e| e == "svg") {
                 write_whole(path, picture(setup, options, &found)?.as_bytes())?;
@@ -58,13 +59,12 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
                 .collect();
             say!(
                 "{}",
-                json!({"k": options.k, "amplitude": amplitude, "out": files})
+                json!({"k": k, "amplitude": amplitude, "out": files})
             );
         } else {
             say!(
-                "{} at k = {}, A = {amplitude:.8}",
-                setup.model.structure().title,
-                options.k
+                "{} at k = {k}, A = {amplitude:.8}",
+                setup.model.structure().title
             );
             for path in &options.out {
                 say!("  {}", path.display());

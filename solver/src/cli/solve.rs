@@ -4,6 +4,7 @@ use super::arguments::{Common, CriticalOptions, Of, SweepOptions, range};
 use super::{interrupt, picture};
 use crate::error::{Error, Result};
 use crate::file::{destination, write_whole};
+use crate::model::C64;
 use crate::study::critical::{Quantity, Question};
 use crate::study::minimise::minimise;
 use crate::study::point::PointReport;
@@ -16,8 +17,28 @@ use crate::words;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Map, json};
 
-pub fn selection(common: &Common) -> Selection<'static> {
-    common.near.map_or(Selection::Leading, Selection::Near)
+/// The wavenumber and the mode that are asked for, or those that the model calls typical.
+///
+/// # Errors
+/// No wavenumber from either.
+pub fn asked(setup: &Setup, k: Option<f64>, common: &Common) -> Result<(f64, Selection<'static>)> {
+    let structure = setup.model.structure();
+    let typical = structure.typical.as_ref();
+    let own = |near: &[f64]| match near {
+        [re, im] => Some(C64::new(*re, *im)),
+        _ => None,
+    };
+    let (k, near) = match (k, typical) {
+        (Some(k), _) => (k, common.near),
+        (None, Some(typical)) => (typical.k, common.near.or(own(&typical.near))),
+        (None, None) => {
+            return Err(Error::input(format!(
+                "give the wavenumber with --k: the model `{}` names no typical one",
+                structure.name
+            )));
+        }
+    };
+    Ok((k, near.map_or(Selection::Leading, Selection::Near)))
 }
 
 pub fn progress(what: &str) -> ProgressBar {
@@ -101,7 +122,8 @@ pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
     Ok(())
 }
 
-pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
+pub fn spectrum(setup: &Setup, k: Option<f64>, common: &Common) -> Result<()> {
+    let (k, _) = asked(setup, k, common)?;
     let found = SpectrumReport::compute(setup, k)?;
     if common.json {
         say!("{}", found.json());
@@ -111,13 +133,14 @@ pub fn spectrum(setup: &Setup, k: f64, common: &Common) -> Result<()> {
     Ok(())
 }
 
-pub fn point(setup: &Setup, k: f64, order: usize, common: &Common) -> Result<()> {
+pub fn point(setup: &Setup, k: Option<f64>, order: usize, common: &Common) -> Result<()> {
     if order != 3 {
         return Err(Error::input(format!(
             "--order {order} is not available: it accepts 3"
         )));
     }
-    let found = PointReport::compute(setup, k, selection(common))?;
+    let (k, selection) = asked(setup, k, common)?;
+    let found = PointReport::compute(setup, k, selection)?;
     if common.json {
         say!("{}", found.json());
     } else {
@@ -325,8 +348,9 @@ fn resumed(found: Resumed) {
     }
 }
 
-pub fn verify(setup: &Setup, k: f64, common: &Common) -> Result<()> {
-    let certificate = Certificate::compute(setup, k, selection(common))?;
+pub fn verify(setup: &Setup, k: Option<f64>, common: &Common) -> Result<()> {
+    let (k, selection) = asked(setup, k, common)?;
+    let certificate = Certificate::compute(setup, k, selection)?;
     if common.json {
         say!("{}", certificate.json());
     } else {
