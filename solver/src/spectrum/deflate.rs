@@ -169,6 +169,14 @@ fn balance<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>) -> Mat<T> {
             }
         }
     }
+    // Rows of comparable mass, as long as a row without any is one of zeros: later, what cancels is noise.
+    for i in 0..mass.nrows() {
+        let factor = power_of_two(largest_of_row(mass, i));
+        for j in 0..n {
+            operator[(i, j)] = operator[(i, j)].times(factor);
+            mass[(i, j)] = mass[(i, j)].times(factor);
+        }
+    }
     Mat::from_fn(n, n, |i, j| {
         T::from_complex(C64::new(if i == j { scales[i] } else { 0.0 }, 0.0))
     })
@@ -191,14 +199,6 @@ fn largest_of_row<T: Scalar>(matrix: &Mat<T>, row: usize) -> f64 {
 /// Rotates rows so that hidden algebraic equations show as rows without mass; false where there are none.
 fn expose<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>) -> bool {
     let size = mass.nrows();
-    // Rows of comparable mass first.
-    for i in 0..size {
-        let factor = power_of_two(largest_of_row(mass, i));
-        for j in 0..size {
-            operator[(i, j)] = operator[(i, j)].times(factor);
-            mass[(i, j)] = mass[(i, j)].times(factor);
-        }
-    }
     let qr = mass.col_piv_qr();
     let r = qr.thin_R();
     let largest = r[(0, 0)].size();
