@@ -95,7 +95,9 @@ impl Diagnostics {
         let range = clamp(&file.text, &diagnostic.location.range);
         // The lines of the place alone, so that a long file costs nothing.
         let start = file.text[..range.start].rfind('\n').map_or(0, |at| at + 1);
-        let end = file.text[range.end..].find('\n').map_or(file.text.len(), |at| range.end + at);
+        let end = file.text[range.end..]
+            .find('\n')
+            .map_or(file.text.len(), |at| range.end + at);
         let number = file.text[..start].matches('\n').count() + 1;
         let lines = &file.text[start..end];
         let mut own = range.start - start..range.end - start;
@@ -135,7 +137,11 @@ fn shortened(text: &str) -> String {
     }
     let part = |range: Range<usize>| &text[clamp(text, &range)];
     let side = LONGEST_TEXT / 2;
-    format!("{} … {}", part(0..side), part(text.len() - side..text.len()))
+    format!(
+        "{} … {}",
+        part(0..side),
+        part(text.len() - side..text.len())
+    )
 }
 
 impl std::fmt::Display for Diagnostics {

@@ -222,6 +222,8 @@ structures! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClosureKind {
     Conserved,
+    /// Said to be conserved: recognised in the collocated problem, or dropped.
+    Claimed,
     Gauge,
     /// A gauge with a time derivative: its multiplier is the rate at which the constant drifts.
     Drift,
@@ -414,6 +416,7 @@ impl Literal for ClosureKind {
     fn literal(&self) -> TokenStream {
         match self {
             ClosureKind::Conserved => quote!(s::ClosureKind::Conserved),
+            ClosureKind::Claimed => quote!(s::ClosureKind::Claimed),
             ClosureKind::Gauge => quote!(s::ClosureKind::Gauge),
             ClosureKind::Drift => quote!(s::ClosureKind::Drift),
             ClosureKind::Unknown => quote!(s::ClosureKind::Unknown),

@@ -3,7 +3,7 @@
 //! Data flows one way, one module a stage:
 //!
 //! [`model`] (kernels, number types) → [`base`] (base state) → [`collocation`] and [`problem`]
-//! (matrices) → [`spectrum`] (modes) → [`weakly`] (amplitude expansion, Landau coefficients) →
+//! (matrices, as [`pencil`]s) → [`spectrum`] (modes) → [`weakly`] (amplitude expansion, Landau coefficients) →
 //! [`study`] (critical points, sweeps, certificate) → [`figure`], [`data`] → [`reproduce`] → [`cli`].
 //!
 //! ```
@@ -34,6 +34,7 @@ pub mod file;
 pub mod library;
 pub mod model;
 pub mod parameters;
+pub mod pencil;
 pub mod problem;
 pub mod reproduce;
 pub mod spectrum;

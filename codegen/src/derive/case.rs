@@ -1,12 +1,12 @@
 //! One case: the boundary conditions under one combination of the structural switches, the adjoint
 //! conditions that follow from them, and what closes the problem at k = 0.
 
-use super::{Deriver, regular};
 use super::boundary::{Combination, Simplifier, as_condition, conjugate, demands, reduce};
 use super::closure::{self, CaseClosure};
 use super::wall::{
     BaseCondition, BaseRules, CaseProblem, WallCondition, Walls, at_end, base_rules, walls,
 };
+use super::{Deriver, regular};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::graph::{Graph, Id, Jet, Node, Plain};
 use crate::model::{Closure, Condition, End};
@@ -251,10 +251,14 @@ fn base_checks(
         let named = fields(deriver.graph, condition.residual);
         let replaced = written_base.iter().any(|other| {
             other.end == condition.end
-                && fields(deriver.graph, other.residual).iter().any(|f| named.contains(f))
+                && fields(deriver.graph, other.residual)
+                    .iter()
+                    .any(|f| named.contains(f))
         });
         let solved = deriver.base_part(condition.residual).is_none_or(|base| {
-            base_fields(deriver, base).iter().any(|f| problem.solved.contains(f))
+            base_fields(deriver, base)
+                .iter()
+                .any(|f| problem.solved.contains(f))
         });
         if !solved && (own || !replaced) {
             found.push((condition.end, condition.residual));
@@ -422,7 +426,12 @@ pub(super) fn check_conserved(deriver: &Deriver, cases: &[Case], mistakes: &mut 
     let conserved = |case: &Case| {
         case.closures
             .iter()
-            .filter(|c| matches!(c, CaseClosure::Conserved { .. }))
+            .filter(|c| {
+                matches!(
+                    c,
+                    CaseClosure::Conserved { .. } | CaseClosure::Claimed { .. }
+                )
+            })
             .count()
     };
     let most = cases.iter().map(conserved).max().unwrap_or(0);

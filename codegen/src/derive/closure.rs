@@ -1,7 +1,9 @@
 //! What closes the problem at k = 0: conserved integrals, gauges, unknown numbers.
 //!
 //! An integral is conserved if some ℓ(y) with M0†ℓ = (its density) obeys L†ℓ = 0 at k = 0 and makes
-//! the boundary form vanish: then d/dt ∫ density = 0. The tool finds ℓ, it does not believe.
+//! the boundary form vanish: then d/dt ∫ density = 0. The tool finds ℓ, it does not believe. Balances without
+//! mass (continuity) leave components of ℓ open; where zero does not do for them, the claim is handed on, and
+//! the collocated problem decides.
 
 use super::Deriver;
 use super::boundary::{Simplifier, at_zero_wavenumber, demands};
@@ -18,6 +20,11 @@ use num_traits::One;
 pub enum CaseClosure {
     /// ∫ density = 0; the multiplier enters the balances with the weights of `column`.
     Conserved {
+        density: Vec<(Jet, Id)>,
+        column: Vec<(usize, Id)>,
+    },
+    /// The same, claimed by the spec: to be recognised in the collocated problem, or dropped.
+    Claimed {
         density: Vec<(Jet, Id)>,
         column: Vec<(usize, Id)>,
     },
@@ -41,7 +48,12 @@ pub enum CaseClosure {
 
 impl CaseClosure {
     fn is_about(&self, other: &[(Jet, Id)]) -> bool {
-        matches!(self, CaseClosure::Conserved { density, .. } if density == other)
+        match self {
+            CaseClosure::Conserved { density, .. } | CaseClosure::Claimed { density, .. } => {
+                density == other
+            }
+            _ => false,
+        }
     }
 }
 
@@ -60,26 +72,30 @@ pub(super) fn derive(
         .base
         .integrals
         .iter()
-        .map(|i| (i.integrand, &i.location));
+        .map(|i| (i.integrand, &i.location, false));
     let declared = model.mean.iter().filter_map(|closure| match closure {
         Closure::Conserved {
             integrand,
             location,
-        } => Some((*integrand, location)),
+        } => Some((*integrand, location, true)),
         _ => None,
     });
-    for (integrand, location) in candidates.chain(declared) {
+    for (integrand, location, declared) in candidates.chain(declared) {
         let Some(form) = deriver.expand(integrand, location, mistakes) else {
             continue;
         };
         let density = density(&form);
-        let Some(column) = multiplier(deriver, problem.linear, &density) else {
-            continue;
-        };
+        let column = multiplier(deriver, problem.linear, &density);
         // An integral of the base that is declared as conserved too is one closure.
-        let known = closures.iter().any(|c| c.is_about(&density));
-        if !known && conserved(deriver, problem, walls, rules, &column, &closures) {
+        if closures.iter().any(|c| c.is_about(&density)) {
+            continue;
+        }
+        let proved = column.filter(|c| conserved(deriver, problem, walls, rules, c, &closures));
+        if let Some(column) = proved {
             closures.push(CaseClosure::Conserved { density, column });
+        } else if declared && has_massless(problem.linear, model.balances.len()) {
+            let column = carried(deriver, problem.linear, &density);
+            closures.push(CaseClosure::Claimed { density, column });
         }
     }
     for closure in &model.mean {
@@ -107,6 +123,23 @@ pub(super) fn derive(
     closures
 }
 
+/// Whether some balance holds no time derivative.
+pub(super) fn has_massless(linear: &[Term], balances: usize) -> bool {
+    (0..balances).any(|row| !linear.iter().any(|t| t.row == row && t.jet.t > 0))
+}
+
+/// The density as the mass matrix carries it into the balances.
+fn carried(deriver: &mut Deriver, linear: &[Term], density: &[(Jet, Id)]) -> Vec<(usize, Id)> {
+    let mut column = Vec::new();
+    for (jet, weight) in density {
+        let time = Jet { t: 1, ..*jet };
+        for term in linear.iter().filter(|t| t.jet == time) {
+            column.push((term.row, deriver.graph.mul(term.coefficient, *weight)));
+        }
+    }
+    column
+}
+
 /// The closure of a field of which only derivatives matter, or why it is none: message and expectation.
 fn gauge(
     deriver: &mut Deriver,
@@ -117,7 +150,12 @@ fn gauge(
 ) -> Result<CaseClosure, (String, &'static str)> {
     let model = deriver.model;
     let name = &model.fields[field].name;
-    let valued = |form: &Form| form.terms.keys().flatten().any(|jet| *jet == Jet::value(field));
+    let valued = |form: &Form| {
+        form.terms
+            .keys()
+            .flatten()
+            .any(|jet| *jet == Jet::value(field))
+    };
     let balances = problem.balances.iter().zip(&model.balances);
     let holder = balances
         .filter(|(form, _)| valued(form))
@@ -134,7 +172,13 @@ fn gauge(
     let mass: Vec<(usize, Id)> = problem
         .linear
         .iter()
-        .filter(|t| t.jet == Jet { t: 1, ..Jet::value(field) })
+        .filter(|t| {
+            t.jet
+                == Jet {
+                    t: 1,
+                    ..Jet::value(field)
+                }
+        })
         .map(|t| (t.row, t.coefficient))
         .collect();
     if !mass.is_empty() {
@@ -143,7 +187,11 @@ fn gauge(
             column: mass,
         });
     }
-    let paired = problem.pairing.iter().position(|f| *f == field).unwrap_or(0);
+    let paired = problem
+        .pairing
+        .iter()
+        .position(|f| *f == field)
+        .unwrap_or(0);
     let others = (0..model.balances.len()).filter(|&row| row != paired);
     for row in std::iter::once(paired).chain(others) {
         for weight in null_candidates(deriver, problem, row) {
@@ -167,7 +215,10 @@ fn gauge(
 fn null_candidates(deriver: &mut Deriver, problem: &CaseProblem, row: usize) -> Vec<Id> {
     let graph = &mut *deriver.graph;
     let mut bases: Vec<Id> = Vec::new();
-    let coefficients = problem.linear.iter().filter(|t| t.row == row && t.jet.t == 0);
+    let coefficients = problem
+        .linear
+        .iter()
+        .filter(|t| t.row == row && t.jet.t == 0);
     for term in coefficients {
         for node in graph.topological(&[term.coefficient]) {
             match graph.node(node) {

@@ -95,7 +95,12 @@ impl<'a> Expander<'a> {
             Node::Derivative(operator, argument) => {
                 let form = self.expand(graph, argument)?;
                 let order = |j: &Jet| j.t.max(j.x).max(j.absx).max(j.y);
-                if form.terms.keys().flatten().any(|jet| order(jet) >= HIGHEST_DERIVATIVE) {
+                if form
+                    .terms
+                    .keys()
+                    .flatten()
+                    .any(|jet| order(jet) >= HIGHEST_DERIVATIVE)
+                {
                     return Err(Inexpandable(format!(
                         "it holds a derivative beyond the order {HIGHEST_DERIVATIVE}"
                     )));

@@ -66,7 +66,9 @@ fn leading(
         }
         if values.iter().all(|(_, zero)| *zero) {
             for coefficient in &mut coefficients {
-                *coefficient = deriver.graph.differentiate(*coefficient, Variable::AlongBase);
+                *coefficient = deriver
+                    .graph
+                    .differentiate(*coefficient, Variable::AlongBase);
             }
             continue;
         }

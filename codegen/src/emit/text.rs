@@ -305,6 +305,10 @@ impl<'a> Writer<'a> {
             CaseClosure::Conserved { density, .. } => {
                 self.vanishes(Label::Name("conserved".into()), &integral(density))
             }
+            CaseClosure::Claimed { density, .. } => self.vanishes(
+                Label::Name("conserved, as claimed".into()),
+                &integral(density),
+            ),
             CaseClosure::Gauge { field, .. } => {
                 Line::Words(format!("gauge: the constant of {}", self.fields()[*field]))
             }

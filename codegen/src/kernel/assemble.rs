@@ -314,6 +314,9 @@ impl Assembler<'_> {
                 CaseClosure::Conserved { density, column } => {
                     (ClosureKind::Conserved, None, density, column)
                 }
+                CaseClosure::Claimed { density, column } => {
+                    (ClosureKind::Claimed, None, density, column)
+                }
                 CaseClosure::Gauge { field, column } => {
                     (ClosureKind::Gauge, Some(field), mean(field), column)
                 }

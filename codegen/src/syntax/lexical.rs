@@ -91,7 +91,10 @@ pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
             // Longer runs of digits are slow to read for what comes after.
             _ if character.is_ascii_digit() => {
                 let mut length = 1;
-                while characters.next_if(|&(_, c)| c.is_ascii_alphanumeric()).is_some() {
+                while characters
+                    .next_if(|&(_, c)| c.is_ascii_alphanumeric())
+                    .is_some()
+                {
                     length += 1;
                 }
                 if length > LONGEST_NUMBER {

@@ -2,9 +2,7 @@
 
 use crate::collocation::{Stretch, derivative_values};
 use crate::error::{Error, Result};
-use crate::model::{
-    End, KernelId, Model, ResidualCall, ResidualId, WithRounding, evaluate,
-};
+use crate::model::{End, KernelId, Model, ResidualCall, ResidualId, WithRounding, evaluate};
 use crate::parameters::Parameters;
 
 /// Places at which a closed base state is checked against its balances.
@@ -31,7 +29,11 @@ impl Leftover {
             false => residual.value.abs() / allowed,
         };
         // What is no number is worse than any.
-        let excess = if excess.is_nan() { f64::INFINITY } else { excess };
+        let excess = if excess.is_nan() {
+            f64::INFINITY
+        } else {
+            excess
+        };
         if excess > self.excess {
             *self = Leftover {
                 excess,
@@ -44,12 +46,7 @@ impl Leftover {
 }
 
 /// The unexpanded residuals at the base state, whose jets are as large as `sizes` somewhere.
-fn residual(
-    model: &dyn Model,
-    id: ResidualId,
-    point: &[f64],
-    sizes: &[f64],
-) -> Vec<WithRounding> {
+fn residual(model: &dyn Model, id: ResidualId, point: &[f64], sizes: &[f64]) -> Vec<WithRounding> {
     let structure = model.structure();
     let count = match id {
         ResidualId::Balances => structure.balances.len(),

@@ -2,7 +2,7 @@
 
 use super::arguments::{Format, OperatorName};
 use crate::error::{Error, Result};
-use crate::model::{Model, TapeModel};
+use crate::model::{CaseInfo, ClosureKind, Model, TapeModel};
 use crate::reproduce::{Errata, Formulas, all_explained};
 use crate::study::Setup;
 use landau_codegen::Sources;
@@ -48,6 +48,7 @@ pub fn check(file: &Path) -> Result<()> {
     let model = TapeModel::new(&sources)
         .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
     check_closed_base(&model)?;
+    check_claims(&model)?;
     let structure = model.structure();
     let fields: Vec<&str> = structure.fields.iter().map(|f| f.name.as_str()).collect();
     say!(
@@ -57,6 +58,37 @@ pub fn check(file: &Path) -> Result<()> {
         fields.join(", ")
     );
     Ok(())
+}
+
+/// Resolution at which a claim is tried.
+const CLAIM_RESOLUTION: usize = 24;
+
+/// What a spec calls conserved without a proof has to be, at the default parameters; where switches change the
+/// walls it may be conserved for other choices.
+fn check_claims(model: &dyn Model) -> Result<()> {
+    let structure = model.structure();
+    let claims = |case: &CaseInfo| {
+        let kinds = case.closures.iter().map(|c| c.kind);
+        kinds.filter(|kind| *kind == ClosureKind::Claimed).count()
+    };
+    let [case] = structure.cases.as_slice() else {
+        return Ok(());
+    };
+    if claims(case) == 0 {
+        return Ok(());
+    }
+    let setup = Setup::new(model, CLAIM_RESOLUTION);
+    let base = setup.base(None)?;
+    setup.with_problem(&base, |problem| {
+        let kept = problem.borders.iter().filter(|b| b.kind == ClosureKind::Claimed);
+        if kept.count() == claims(case) {
+            return Ok(());
+        }
+        Err(Error::input(
+            "an integral that the block `mean` calls conserved is not: its density must change by a flux that \
+             vanishes at both ends",
+        ))
+    })
 }
 
 /// Relative distances from the defaults at which a base state in closed form is tried.

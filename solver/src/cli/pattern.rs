@@ -57,10 +57,7 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
                 .iter()
                 .map(|p| p.display().to_string())
                 .collect();
-            say!(
-                "{}",
-                json!({"k": k, "amplitude": amplitude, "out": files})
-            );
+            say!("{}", json!({"k": k, "amplitude": amplitude, "out": files}));
         } else {
             say!(
                 "{} at k = {k}, A = {amplitude:.8}",

@@ -276,13 +276,14 @@ impl Problem<'_> {
     pub fn bordered_adjoint_pencil<T: Scalar>(&self) -> Result<(Mat<T>, Mat<T>)> {
         let adjoint = self.adjoint()?;
         let layout = &adjoint.layout;
-        let borders = closure::adjoint(self.model, self.base, layout, self.discretisation)?;
+        let kept: Vec<usize> = self.borders.iter().map(|b| b.closure).collect();
+        let borders = closure::adjoint(self.model, self.base, layout, self.discretisation, &kept)?;
         Ok(with_borders(self.pencil_of(adjoint, 0.0), &borders))
     }
 }
 
 /// A pencil with borders that have no mass.
-fn with_borders<T: Scalar>(
+pub(super) fn with_borders<T: Scalar>(
     (operator, mass): (Mat<T>, Mat<T>),
     borders: &[Border],
 ) -> (Mat<T>, Mat<T>) {

@@ -13,6 +13,8 @@ use crate::model::{ClosureInfo, ClosureKind, Jet, KernelId, Model, evaluate};
 #[derive(Clone, Debug)]
 pub struct Border {
     pub kind: ClosureKind,
+    /// Its position among the closures of the case.
+    pub closure: usize,
     /// What is closed, in words: `conserved n`, `gauge p`, `unknown G`.
     pub name: String,
     /// The gauge or the unknown number.
@@ -59,6 +61,7 @@ pub fn direct(
         };
         Border {
             kind: info.kind,
+            closure: index,
             name: closures.name(info),
             field: info.field,
             row,
@@ -68,7 +71,8 @@ pub fn direct(
     infos.map(border).collect()
 }
 
-/// The borders of the adjoint problem, whose columns are balances and whose rows are fields.
+/// The borders of the adjoint problem, whose columns are balances and whose rows are fields, for the closures
+/// that the direct problem has kept.
 ///
 /// # Errors
 /// An integral of a derivative, which has no density.
@@ -77,6 +81,7 @@ pub fn adjoint(
     base: &BaseState,
     layout: &Layout,
     discretisation: &Discretisation,
+    kept: &[usize],
 ) -> Result<Vec<Border>> {
     let closures = Closures {
         model,
@@ -84,6 +89,7 @@ pub fn adjoint(
         discretisation,
     };
     let infos = closures.infos().iter().enumerate();
+    let infos = infos.filter(|(index, _)| kept.contains(index));
     let border = |(index, info): (usize, &ClosureInfo)| {
         if info.density.iter().any(|jet| jet.y > 0) {
             return Err(Error::computation(
@@ -105,6 +111,7 @@ pub fn adjoint(
         };
         Ok(Border {
             kind: info.kind,
+            closure: index,
             name: closures.name(info),
             field: info.field,
             row,
@@ -135,7 +142,7 @@ impl Closures<'_> {
                 .collect(),
         };
         let kind = match info.kind {
-            ClosureKind::Conserved => "conserved",
+            ClosureKind::Conserved | ClosureKind::Claimed => "conserved",
             ClosureKind::Gauge => "gauge",
             ClosureKind::Drift => "drifting",
             ClosureKind::Unknown => "unknown",

@@ -6,6 +6,7 @@
 
 mod assemble;
 mod block;
+mod claim;
 mod closure;
 mod conditions;
 mod mirror;
@@ -112,7 +113,7 @@ impl<'m> Problem<'m> {
         }
         let gram = gram(model, base, &direct.layout, discretisation, resolution);
         let adjoint = OnceLock::new();
-        Ok(Problem {
+        let mut problem = Problem {
             model,
             base,
             resolution,
@@ -122,7 +123,9 @@ impl<'m> Problem<'m> {
             borders,
             nonlinear,
             gram,
-        })
+        };
+        problem.recognise_claims();
+        Ok(problem)
     }
 
     /// The adjoint problem, discretised on its own.

@@ -3,17 +3,15 @@
 //! Boundary conditions, continuity and closures make M0 singular; the infinite eigenvalues are
 //! deflated exactly before anything is computed.
 
-mod deflate;
 mod iteration;
-mod scale;
 
+pub use crate::pencil::Spectrum;
 pub use iteration::{beside, likeness};
-pub use scale::Spectrum;
 
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::pencil::Reduced;
 use crate::problem::Problem;
-use deflate::Reduced;
 use iteration::refine;
 
 /// Cosine between a mode and its continuation below which it counts as another mode.

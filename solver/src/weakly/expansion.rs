@@ -262,7 +262,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
                         drift.resize(n, C64::new(0.0, 0.0));
                         drift[block.offset..][..block.len].fill(value);
                     }
-                    ClosureKind::Conserved | ClosureKind::Gauge => {}
+                    ClosureKind::Conserved | ClosureKind::Claimed | ClosureKind::Gauge => {}
                 }
             }
         }

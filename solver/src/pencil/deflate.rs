@@ -22,7 +22,7 @@ const FIRST_SHIFT: f64 = 0.577_215_664_901_532_9;
 const GOOD_SHIFT: std::ops::Range<f64> = 1e-3..1e6;
 
 /// A pencil without infinite eigenvalues: x = basis · w.
-pub(super) struct Reduced<T: Scalar> {
+pub struct Reduced<T: Scalar> {
     operator: Mat<T>,
     mass: Mat<T>,
     basis: Mat<T>,

@@ -1,0 +1,54 @@
+//! Integrals that a spec calls conserved, recognised in the collocated problem at k = 0.
+//!
+//! d/dt ∫ density = c ∫ density for an eigenvector of eigenvalue c, so that an integral is conserved if and
+//! only if it vanishes for all of them but one, whose eigenvalue is zero.
+
+use super::Problem;
+use super::assemble::with_borders;
+use crate::dense::norm;
+use crate::model::{C64, ClosureKind};
+use crate::pencil::Reduced;
+
+/// What counts as zero, relative to the terms.
+const TOLERANCE: f64 = 1e-6;
+/// Eigenvectors that are looked at: the slow ones, which are resolved.
+const SLOW: usize = 6;
+
+impl Problem<'_> {
+    /// Drops the claimed closures that the problem does not bear out.
+    pub(super) fn recognise_claims(&mut self) {
+        let is_claim = |position: &usize| self.borders[*position].kind == ClosureKind::Claimed;
+        let claims: Vec<usize> = (0..self.borders.len()).filter(is_claim).collect();
+        if claims.is_empty() {
+            return;
+        }
+        let known = self
+            .borders
+            .iter()
+            .filter(|b| b.kind != ClosureKind::Claimed);
+        let known: Vec<_> = known.cloned().collect();
+        let slow = Reduced::<f64>::new(with_borders(self.pencil(0.0), &known))
+            .and_then(|pencil| pencil.eigenvectors());
+        let Ok((spectrum, mut modes)) = slow else {
+            return;
+        };
+        modes.sort_by(|a, b| a.0.norm().total_cmp(&b.0.norm()));
+        modes.truncate(SLOW);
+        let zero = TOLERANCE * spectrum.scale();
+        let borne_out = |position: usize| {
+            let row = &self.borders[position].row;
+            let share = |mode: &[C64]| {
+                let sum: C64 = row.iter().zip(mode).map(|(r, x)| *x * *r).sum();
+                sum.norm() / (norm(row) * norm(mode))
+            };
+            let moving = modes.iter().filter(|(c, _)| c.norm() > zero);
+            let still = modes.iter().filter(|(c, _)| c.norm() <= zero);
+            moving.map(|(_, mode)| share(mode)).all(|s| s <= TOLERANCE)
+                && still.map(|(_, mode)| share(mode)).any(|s| s > TOLERANCE)
+        };
+        let dropped: Vec<usize> = claims.into_iter().filter(|&p| !borne_out(p)).collect();
+        for position in dropped.into_iter().rev() {
+            self.borders.remove(position);
+        }
+    }
+}
