@@ -5,11 +5,11 @@
 //! mass (continuity) leave components of ℓ open; where zero does not do for them, the claim is handed on, and
 //! the collocated problem decides.
 
-use super::Deriver;
 use super::boundary::{Simplifier, at_zero_wavenumber, demands};
 use super::form::Form;
 use super::linear::Term;
 use super::wall::{BaseRules, CaseProblem, Walls, at_end};
+use super::{Case, Deriver};
 use crate::diagnostic::Diagnostic;
 use crate::graph::{Graph, Id, Jet, Node, Rational, Variable};
 use crate::model::Closure;
@@ -121,6 +121,22 @@ pub(super) fn derive(
         }
     }
     closures
+}
+
+/// A claim that is proved for other choices of the switches does not hold where it is not.
+pub(super) fn drop_refuted(cases: &mut [Case]) {
+    let proved: Vec<CaseClosure> = cases
+        .iter()
+        .flat_map(|case| &case.closures)
+        .filter(|closure| matches!(closure, CaseClosure::Conserved { .. }))
+        .cloned()
+        .collect();
+    for case in cases {
+        case.closures.retain(|closure| match closure {
+            CaseClosure::Claimed { density, .. } => !proved.iter().any(|c| c.is_about(density)),
+            _ => true,
+        });
+    }
 }
 
 /// Whether some balance holds no time derivative.

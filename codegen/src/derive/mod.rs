@@ -194,6 +194,7 @@ impl<'a> Deriver<'a> {
             };
             cases.extend(case::derive(&mut self, problem, choices, mistakes));
         }
+        closure::drop_refuted(&mut cases);
         case::check_conserved(&self, &cases, mistakes);
         let walls: Vec<&Form> = cases
             .iter()

@@ -85,8 +85,8 @@ fn check_claims(model: &dyn Model) -> Result<()> {
             return Ok(());
         }
         Err(Error::input(
-            "an integral that the block `mean` calls conserved is not: its density must change by a flux that \
-             vanishes at both ends",
+            "an integral of the block `mean`: this integral is not conserved, for its density must change by a \
+             flux that vanishes at both ends",
         ))
     })
 }
