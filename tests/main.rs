@@ -1,6 +1,7 @@
 //! The test families. Adding a case is adding a file (diagnostics, golden text) or a function.
 
 mod command_line;
+mod derivatives;
 mod diagnostics;
 mod errata;
 mod formulas;
@@ -8,8 +9,12 @@ mod fuzz;
 mod golden;
 mod identities;
 mod latex;
+mod layout;
 mod published;
 mod published_bed;
 mod reproduce;
+mod statements;
 mod support;
 mod tutorial;
+mod units;
+mod waves;

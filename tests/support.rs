@@ -5,6 +5,7 @@ use landau_solver::model::TapeModel;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub struct Answer {
     pub status: i32,
@@ -40,6 +41,17 @@ pub fn number(value: &Value, path: &str) -> f64 {
         .pointer(path)
         .and_then(Value::as_f64)
         .unwrap_or_else(|| panic!("{path} in {value}"))
+}
+
+/// A file of a test's own, in a folder of its own below the target folder.
+pub fn written(name: &str, text: &str) -> PathBuf {
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("spec{number}"));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("a file");
+    path
 }
 
 /// The workspace.

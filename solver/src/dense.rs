@@ -109,13 +109,16 @@ pub fn vectorised<R>(work: impl FnOnce() -> R) -> R {
     faer::traits::pulp::Arch::new().dispatch(work)
 }
 
-/// A square system, rows brought to comparable size, factorised once for many right-hand sides.
+/// A square system, rows and columns brought to comparable size (so that units do not matter), factorised once
+/// for many right-hand sides.
 pub struct Factorised<T: Scalar> {
     /// L below the diagonal, U above and on it: the matrix itself, overwritten.
     factors: Mat<T>,
     rows: Perm<usize>,
     /// 1 / (largest entry of each row)
     scale: Vec<f64>,
+    /// 1 / (largest entry of each column of the rest)
+    columns: Vec<f64>,
 }
 
 impl<T: Scalar> Factorised<T> {
@@ -125,15 +128,9 @@ impl<T: Scalar> Factorised<T> {
             #[inline(always)]
             || row_scale(&matrix),
         );
-        vectorised(
+        let columns = vectorised(
             #[inline(always)]
-            || {
-                for j in 0..n {
-                    for (factor, entry) in scale.iter().zip(matrix.col_as_slice_mut(j)) {
-                        *entry = entry.times(*factor);
-                    }
-                }
-            },
+            || scale_entries(&mut matrix, &scale),
         );
         let (mut forward, mut backward) = (vec![0; n], vec![0; n]);
         let (parallel, spec) = (get_global_parallelism(), Spec::default());
@@ -150,6 +147,7 @@ impl<T: Scalar> Factorised<T> {
             factors: matrix,
             rows: Perm::new_checked(forward.into(), backward.into(), n),
             scale,
+            columns,
         }
     }
 
@@ -191,12 +189,16 @@ impl<T: Scalar> Factorised<T> {
             parallel,
             MemStack::new(&mut MemBuffer::new(scratch)),
         );
+        x.iter_mut()
+            .zip(&self.columns)
+            .for_each(|(x, c)| *x = x.times(*c));
         x
     }
 
     /// A⁻ᴴ b
     pub fn solve_adjoint(&self, right: &[T]) -> Vec<T> {
-        let mut x = right.to_vec();
+        let scaled = right.iter().zip(&self.columns);
+        let mut x: Vec<T> = scaled.map(|(b, c)| b.times(*c)).collect();
         let (n, factors) = (x.len(), self.factors.as_ref());
         let parallel = get_global_parallelism();
         let scratch = solve::solve_transpose_in_place_scratch::<usize, T>(n, 1, parallel);
@@ -228,6 +230,27 @@ fn row_scale<T: Scalar>(matrix: &Mat<T>) -> Vec<f64> {
     }
     let invert = |m: f64| if m == 0.0 { 1.0 } else { 1.0 / m };
     largest.into_iter().map(invert).collect()
+}
+
+/// Scales rows by the given factors, then columns by 1 / (largest entry); the factors of the columns.
+#[inline(always)]
+fn scale_entries<T: Scalar>(matrix: &mut Mat<T>, rows: &[f64]) -> Vec<f64> {
+    let mut columns = Vec::with_capacity(matrix.ncols());
+    for j in 0..matrix.ncols() {
+        let column = matrix.col_as_slice_mut(j);
+        let mut largest = 0.0_f64;
+        for (factor, entry) in rows.iter().zip(&mut *column) {
+            *entry = entry.times(*factor);
+            let size = entry.size();
+            largest = if size > largest { size } else { largest };
+        }
+        let factor = if largest == 0.0 { 1.0 } else { 1.0 / largest };
+        for entry in column {
+            *entry = entry.times(factor);
+        }
+        columns.push(factor);
+    }
+    columns
 }
 
 /// [A c; rᴴ 0] for borders (c, r), each of the length of A.

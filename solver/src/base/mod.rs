@@ -118,6 +118,42 @@ impl BaseState {
     }
 }
 
+impl BaseState {
+    /// The state at parameters next to its own, none of them automatic, at the same degree where that will do.
+    ///
+    /// # Errors
+    /// As [`solve_near`].
+    pub fn moved(&self, model: &dyn Model, parameters: &Parameters) -> Result<BaseState> {
+        let newton = Newton {
+            model,
+            parameters,
+            resolved: FULL.tail,
+        };
+        let solved = !self.series.is_empty() && self.case == parameters.case(model.structure());
+        if solved && let Ok(state) = newton.solve(Some(self), self.degree, self.stretch) {
+            return Ok(state);
+        }
+        fixed(model, parameters, Some(self), FULL)
+    }
+}
+
+/// What is left of the conditions that determine the given parameters.
+pub fn automatic_conditions(
+    model: &dyn Model,
+    state: &BaseState,
+    unknown: &[usize],
+) -> nalgebra::DVector<f64> {
+    let automatic = &model.structure().base.automatic;
+    let values = unknown.iter().map(|&index| {
+        let position = automatic.iter().position(|a| a.parameter == index);
+        position.map_or(0.0, |position| {
+            let end = automatic[position].end;
+            evaluate(model, KernelId::Automatic, &state.at_end(model, end))[position]
+        })
+    });
+    nalgebra::DVector::from_iterator(unknown.len(), values)
+}
+
 fn check_interval(model: &dyn Model, parameters: &Parameters) -> Result<()> {
     let (lower, upper) = state::interval(model, parameters);
     if lower.is_finite() && upper.is_finite() && upper > lower {
@@ -277,20 +313,7 @@ fn adjust(
             current.values[index] = state.parameters.values[index];
         }
     }
-    let conditions = |state: &BaseState| -> nalgebra::DVector<f64> {
-        let values = unknown.iter().map(|&index| {
-            let position = structure
-                .base
-                .automatic
-                .iter()
-                .position(|a| a.parameter == index);
-            position.map_or(0.0, |position| {
-                let end = structure.base.automatic[position].end;
-                evaluate(model, KernelId::Automatic, &state.at_end(model, end))[position]
-            })
-        });
-        nalgebra::DVector::from_iterator(unknown.len(), values)
-    };
+    let conditions = |state: &BaseState| automatic_conditions(model, state, &unknown);
     let mut state = fixed(model, &current, near, accuracy)?;
     let mut residual = conditions(&state);
     for _ in 0..MOST_ADJUSTMENTS {

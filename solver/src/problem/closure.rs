@@ -21,8 +21,26 @@ pub struct Border {
     pub field: Option<usize>,
     /// Coefficients of the unknowns.
     pub row: Vec<f64>,
-    /// Entries in the collocated equations.
+    /// Entries in the collocated equations, brought to the size of these: `unit` times the weights.
     pub column: Vec<f64>,
+    /// The multiplier is `unit` times the unknown that goes with the column.
+    pub unit: f64,
+}
+
+impl Border {
+    /// Brings the column to the size of the equations that it enters, `sizes` being theirs.
+    pub fn balance(&mut self, layout: &Layout, sizes: &[f64]) {
+        let touched = layout.rows.iter().zip(sizes).filter(|(block, _)| {
+            let own = &self.column[block.offset..][..block.len];
+            own.iter().any(|c| *c != 0.0)
+        });
+        let weights = self.column.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
+        let unit = touched.map(|(_, size)| size / weights).fold(0.0, f64::max);
+        if unit > 0.0 && unit.is_finite() {
+            self.column.iter_mut().for_each(|c| *c *= unit);
+            self.unit *= unit;
+        }
+    }
 }
 
 /// What closes a case, with its weights at any place.
@@ -66,6 +84,7 @@ pub fn direct(
             field: info.field,
             row,
             column,
+            unit: 1.0,
         }
     };
     infos.map(border).collect()
@@ -116,6 +135,7 @@ pub fn adjoint(
             field: info.field,
             row,
             column,
+            unit: 1.0,
         })
     };
     infos.map(border).collect()

@@ -124,6 +124,12 @@ impl<'m> Problem<'m> {
             nonlinear,
             gram,
         };
+        let sizes: Vec<f64> = (0..problem.direct.layout.rows.len())
+            .map(|row| median(problem.term_sizes(row, 0.0, |jet| jet.t == 0)))
+            .collect();
+        for border in &mut problem.borders {
+            border.balance(&problem.direct.layout, &sizes);
+        }
         problem.recognise_claims();
         Ok(problem)
     }
@@ -205,29 +211,27 @@ impl<'m> Problem<'m> {
     /// The rate at which the balances of slowest terms change their fields: Σ |coefficient| |k|^a (2/h)^d over
     /// the mass, a median over the points.
     pub fn rate(&self, k: f64) -> f64 {
-        let rates = (0..self.direct.layout.rows.len()).filter_map(|row| {
-            let sum = |time: bool| -> Vec<f64> {
-                let mut sums = vec![0.0; self.direct.layout.rows[row].len];
-                let own = self.direct.terms.iter().filter(|(r, ..)| *r == row);
-                for (_, jet, coefficients) in own.filter(|(_, jet, _)| (jet.t > 0) == time) {
-                    let size = k.abs().powi(i32::from(jet.x + jet.absx))
-                        * self.scale().powi(i32::from(jet.y));
-                    for (sum, c) in sums.iter_mut().zip(coefficients) {
-                        *sum += c.abs() * size;
-                    }
-                }
-                sums
-            };
-            let mut rates: Vec<f64> = sum(false)
-                .into_iter()
-                .zip(sum(true))
-                .map(|(terms, mass)| terms / mass)
-                .filter(|rate| rate.is_finite())
-                .collect();
-            rates.sort_by(f64::total_cmp);
-            rates.get(rates.len() / 2).copied()
+        let rates = (0..self.direct.layout.rows.len()).map(|row| {
+            let terms = self.term_sizes(row, k, |jet| jet.t == 0);
+            let mass = self.term_sizes(row, k, |jet| jet.t > 0);
+            let rates = terms.iter().zip(mass).map(|(t, m)| t / m);
+            median(rates.filter(|rate| rate.is_finite()).collect())
         });
         rates.filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Σ |coefficient| |k|^a (2/h)^d over the chosen terms of a row, at each of its points.
+    fn term_sizes(&self, row: usize, k: f64, chosen: impl Fn(Jet) -> bool) -> Vec<f64> {
+        let mut sums = vec![0.0; self.direct.layout.rows[row].len];
+        let own = self.direct.terms.iter().filter(|(r, ..)| *r == row);
+        for (_, jet, coefficients) in own.filter(|(_, jet, _)| chosen(*jet)) {
+            let size =
+                k.abs().powi(i32::from(jet.x + jet.absx)) * self.scale().powi(i32::from(jet.y));
+            for (sum, c) in sums.iter_mut().zip(coefficients) {
+                *sum += c.abs() * size;
+            }
+        }
+        sums
     }
 
     /// dξ/dy, or 1 without a cross-stream coordinate.
@@ -238,6 +242,12 @@ impl<'m> Problem<'m> {
             self.base.scale()
         }
     }
+}
+
+/// The middle value, or zero of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// i^turns

@@ -1,69 +1,121 @@
-//! dc0/d(parameter): ⟨Y, (∂L − c0 ∂M0) X⟩ / ⟨Y, M0 X⟩, the base state moving along.
+//! dc0/d(parameter): ⟨Y, (∂L − c0 ∂M0) X⟩ / ⟨Y, M0 X⟩, the base state moving along; dc0/dk.
 
 use super::Setup;
-use crate::base::BaseState;
+use crate::base::{BaseState, automatic_conditions};
 use crate::dense::{apply, dot};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::problem::{Combination, Problem};
 use crate::spectrum::EigenPair;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Relative step of the difference formula, of fourth order, for the operators.
 const STEP: f64 = 1e-3;
+/// What rounding leaves of a base state that is solved for anew, relative.
+const ROUNDING: f64 = 1e-13;
+
+/// Derivatives by one parameter, the others fixed: of c0, and of the conditions of automatic parameters.
+struct Partial {
+    growth: C64,
+    conditions: DVector<f64>,
+}
 
 /// dc0/dp for every parameter that is a number and not determined by the base.
 ///
 /// The operators' derivative is a fourth-order difference; modes are not differenced. A parameter that L, its
-/// conditions and the base state do not hold gives zero exactly.
+/// conditions and the base state do not hold gives zero exactly. Automatic parameters follow their conditions
+/// g = 0: dc0/dp = ∂c0/∂p − ∂c0/∂h (∂g/∂h)⁻¹ ∂g/∂p.
 pub fn parameters(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Vec<(usize, Result<C64>)> {
     let structure = setup.model.structure();
-    let free: Vec<usize> = (0..structure.parameters.len())
-        .filter(|&i| structure.parameters[i].choices.is_empty() && !setup.parameters.automatic[i])
+    let numbers = 0..structure.parameters.len();
+    let numbers = numbers.filter(|&i| structure.parameters[i].choices.is_empty());
+    let (automatic, free): (Vec<usize>, Vec<usize>) =
+        numbers.partition(|&i| setup.parameters.automatic[i]);
+    let partial = |&index: &usize| partial(setup, base, pair, index, &automatic);
+    let own: Result<Vec<Partial>> = automatic.par_iter().map(partial).collect();
+    let follow = |found: Result<Partial>| -> Result<C64> {
+        let found = found?;
+        if automatic.is_empty() {
+            return Ok(found.growth);
+        }
+        let own = own.as_ref().map_err(Clone::clone)?;
+        let columns: Vec<_> = own.iter().map(|p| p.conditions.clone()).collect();
+        let moved = DMatrix::from_columns(&columns)
+            .lu()
+            .solve(&found.conditions)
+            .ok_or_else(|| Error::computation("an automatic parameter is not determined"))?;
+        let along: C64 = own
+            .iter()
+            .zip(moved.iter())
+            .map(|(p, m)| p.growth * *m)
+            .sum();
+        Ok(found.growth - along)
+    };
+    let found: Vec<(usize, Result<Partial>)> = free
+        .par_iter()
+        .map(|index| (*index, partial(index)))
         .collect();
-    free.into_par_iter()
-        .map(|index| (index, one(setup, base, pair, index)))
+    found
+        .into_iter()
+        .map(|(index, p)| (index, follow(p)))
         .collect()
 }
 
-fn one(setup: &Setup, base: &BaseState, pair: &EigenPair, index: usize) -> Result<C64> {
+fn partial(
+    setup: &Setup,
+    base: &BaseState,
+    pair: &EigenPair,
+    index: usize,
+    automatic: &[usize],
+) -> Result<Partial> {
     let info = &setup.model.structure().parameters[index];
-    let value = setup.parameters.values[index];
+    let value = base.parameters.values[index];
     let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
-    let shifted = |shift: f64| -> Result<C64> {
+    let shifted = |shift: f64| -> Result<Partial> {
         let mut moved = setup.clone();
         // The formula may reach past a declared range.
+        moved.parameters = base.parameters.clone();
+        moved.parameters.automatic.fill(false);
         moved.parameters.values[index] = value + shift * step;
-        let state = moved.base(Some(base))?;
-        quotient_at(&moved, &state, pair)
-    };
-    // A base state that is solved for anew differs by rounding where the parameter does nothing.
-    let floor = 1e-13 * pair.c.norm().max(pair.scale) / step;
-    let settled = |slope: C64| {
-        let part = |x: f64| if x.abs() <= floor { 0.0 } else { x };
-        C64::new(part(slope.re), part(slope.im))
+        let state = base.moved(setup.model, &moved.parameters)?;
+        Ok(Partial {
+            growth: quotient_at(&moved, &state, pair)?,
+            conditions: automatic_conditions(setup.model, &state, automatic),
+        })
     };
     // Inside the range if need be: one-sided where a bound is near.
     let room = |side: f64| {
         let reach = value + side * 2.0 * step;
         reach >= info.lower && reach <= info.upper
     };
-    if room(-1.0) && room(1.0) {
+    // The weights of a formula sum to zero, so that differences from one of its points do.
+    let (places, weights, scale): (Vec<f64>, Vec<f64>, f64) = if room(-1.0) && room(1.0) {
         // (f(−2h) − 8 f(−h) + 8 f(h) − f(2h)) / 12h
-        let (a, b) = (shifted(-2.0)?, shifted(-1.0)?);
-        let (c, d) = (shifted(1.0)?, shifted(2.0)?);
-        return Ok(settled(((a - d) + 8.0 * (c - b)) / (12.0 * step)));
+        let weights = vec![1.0, -8.0, 8.0, -1.0];
+        (vec![-2.0, -1.0, 1.0, 2.0], weights, 12.0 * step)
+    } else {
+        // (−25 f0 + 48 f1 − 36 f2 + 16 f3 − 3 f4) / 12h
+        let side = if room(1.0) { 0.5 } else { -0.5 };
+        let places = (0..5).map(|i| side * f64::from(i)).collect();
+        let weights = vec![-25.0, 48.0, -36.0, 16.0, -3.0];
+        (places, weights, 12.0 * side * step)
+    };
+    let points: Result<Vec<Partial>> = places.into_iter().map(shifted).collect();
+    let points = points?;
+    let (mut growth, mut conditions) = (C64::new(0.0, 0.0), points[0].conditions.clone() * 0.0);
+    for (point, weight) in points.iter().zip(&weights).skip(1) {
+        growth += (point.growth - points[0].growth) * *weight;
+        conditions += (&point.conditions - &points[0].conditions) * *weight;
     }
-    let side = if room(1.0) { 1.0 } else { -1.0 };
-    // (−25 f0 + 48 f1 − 36 f2 + 16 f3 − 3 f4) / 12h
-    // The weights sum to zero, so that differences from f0 do.
-    let weights = [-25.0, 48.0, -36.0, 16.0, -3.0];
-    let first = shifted(0.0)?;
-    let mut total = C64::new(0.0, 0.0);
-    for (i, weight) in weights.iter().enumerate().skip(1) {
-        total += *weight * (shifted(side * 0.5 * i as f64)? - first);
-    }
-    Ok(settled(total / (12.0 * 0.5 * step * side)))
+    // A base state that is solved for anew differs by rounding where the parameter does nothing.
+    let floor = ROUNDING * pair.c.norm().max(pair.scale) / step;
+    let part = |x: f64| if x.abs() <= floor { 0.0 } else { x };
+    let growth = growth / scale;
+    Ok(Partial {
+        growth: C64::new(part(growth.re), part(growth.im)),
+        conditions: conditions / scale,
+    })
 }
 
 /// ⟨Y, L X⟩ / ⟨Y, M0 X⟩ with the vectors of another state: stationary at the mode itself.

@@ -254,7 +254,8 @@ impl<'p, 'm> Expansion<'p, 'm> {
         if harmonic == 0 {
             for (border, value) in self.problem.borders.iter().zip(&solution[n..]) {
                 let Some(field) = border.field else { continue };
-                let value = value.complex() * quarter_turn(self.problem.direct.column_turn(field));
+                let turn = quarter_turn(self.problem.direct.column_turn(field));
+                let value = value.complex() * turn * border.unit;
                 match border.kind {
                     ClosureKind::Unknown => uniform[field - profiles] = value,
                     ClosureKind::Drift => {

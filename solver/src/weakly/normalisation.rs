@@ -43,7 +43,9 @@ fn unchecked(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
         if !(wanted > 0.0) {
             return Err(vanishes(problem));
         }
-        if value.norm() < 1e-12 * values.iter().map(|v| v.norm()).fold(0.0, f64::max) {
+        let block = &problem.direct.layout.columns[field];
+        let own = &values[block.offset..][..block.len];
+        if value.norm() <= 1e-12 * own.iter().map(|v| v.norm()).fold(0.0, f64::max) {
             return Err(vanishes(problem));
         }
         return Ok(turn(problem, field) * value.conj() / value.norm_sqr() * wanted);
