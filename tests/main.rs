@@ -1,6 +1,7 @@
 //! The test families. Adding a case is adding a file (diagnostics, golden text) or a function.
 
 mod command_line;
+mod coverage;
 mod derivatives;
 mod diagnostics;
 mod errata;
@@ -15,6 +16,7 @@ mod published_bed;
 mod reproduce;
 mod statements;
 mod support;
+mod sweeps;
 mod tutorial;
 mod units;
 mod waves;

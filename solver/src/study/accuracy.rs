@@ -18,7 +18,7 @@ const NUDGE: f64 = 1e-6;
 /// Rounding errors of the data that a result is allowed to be wrong by, in units of the machine's precision.
 const ROUNDINGS: f64 = 32.0;
 /// Safety factors of two differences that show rounding, which is as good as random.
-const SAFETY: f64 = 3.0;
+const SAFETY: f64 = 5.0;
 
 /// Absolute errors of c0 and c2.
 #[derive(Clone, Copy, Debug)]
