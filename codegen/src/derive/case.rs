@@ -216,14 +216,44 @@ fn base_conditions(
             "{} conditions, at the ends and on integrals together",
             problem.base_conditions
         );
-        mistakes.push(
-            Diagnostic::new(deriver.model.base.location.clone(), message, expected).hint(
-                "conditions of `boundary` count where the `base` block says nothing of the field",
+        let bound = found
+            .iter()
+            .flat_map(|c| base_fields(deriver, c.residual))
+            .collect::<Vec<_>>();
+        let open = constants(deriver, problem, &bound);
+        let hint = match open.as_slice() {
+            [name, ..] if given < problem.base_conditions => format!(
+                "`{name}` enters the base balances by its derivatives alone: fix its constant by \
+                 `integral({name}) = 0`, or by its value at an end"
             ),
-        );
+            _ => "conditions of `boundary` count where the `base` block says nothing of the field"
+                .to_owned(),
+        };
+        let place = deriver.model.base.location.clone();
+        mistakes.push(Diagnostic::new(place, message, expected).hint(hint));
         return None;
     }
     Some(found)
+}
+
+/// Solved fields of which the base balances hold derivatives alone, and no condition of the base anything.
+fn constants(deriver: &Deriver, problem: &CaseProblem, bound: &[usize]) -> Vec<String> {
+    let solved = problem.solved.iter().filter(|&&field| {
+        let valued = problem.balances.iter().any(|form| {
+            let base = form.terms.get(&Vec::new());
+            base.is_some_and(|&id| {
+                deriver.graph.any(id, |node| match node {
+                    Node::Base(f, order) => *f == field && *order == 0,
+                    Node::BaseLaw(atom) => deriver.dependence[atom.law][field],
+                    _ => false,
+                })
+            })
+        });
+        !valued && !deriver.uniform[field] && !bound.contains(&field)
+    });
+    solved
+        .map(|&f| deriver.model.fields[f].name.clone())
+        .collect()
 }
 
 /// Conditions of the `base` block, and those of `boundary` that it does not replace, about fields that are all

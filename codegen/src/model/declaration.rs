@@ -95,10 +95,20 @@ pub(super) fn parameters(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec
             mistakes.push(twice(&item.name));
             continue;
         }
-        if let Some(parameter) = keep(names.parameter(item), mistakes) {
-            names.parameters.push(parameter);
-            names.used.push(false);
-        }
+        let parameter = keep(names.parameter(item), mistakes);
+        // Kept by name where its declaration is wrong, so that its uses are not reported too.
+        names
+            .parameters
+            .push(parameter.unwrap_or_else(|| Parameter {
+                name: item.name.text.clone(),
+                doc: String::new(),
+                default: 0.0,
+                lower: f64::NEG_INFINITY,
+                upper: f64::INFINITY,
+                choices: Vec::new(),
+                location: item.name.location.clone(),
+            }));
+        names.used.push(false);
     }
 }
 

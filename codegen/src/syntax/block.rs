@@ -128,7 +128,11 @@ impl Reader {
             "unknown" => {
                 let name = self.name(input, "the name of the unknown")?;
                 self.punctuation(input, ":")?;
-                Ok(MeanItem::Unknown(name, self.integral_condition(input)?))
+                let condition = self.integral_condition(input).map_err(|mistake| {
+                    let form = format!("unknown {}: integral(u) = Q;", name.text);
+                    mistake.hint(format!("an integral determines an unknown: `{form}`"))
+                })?;
+                Ok(MeanItem::Unknown(name, condition))
             }
             other => Err(unknown_item(
                 &keyword.location,
