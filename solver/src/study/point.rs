@@ -132,9 +132,18 @@ impl PointReport {
     }
 }
 
+/// What a distance from singularity is small or large against: the slow eigenvalues, or the terms of the slowest
+/// balance where there are too few of them to tell.
+pub fn slow_rate(point: &LandauPoint) -> f64 {
+    let pair = &point.expansion.pair;
+    let rate = point.expansion.problem.rate(pair.k);
+    let floor = if rate.is_finite() { rate } else { 0.0 };
+    pair.scale.max(pair.c.norm()).max(floor)
+}
+
 /// Second-order problems that are singular to working precision, named.
 fn check_distances(point: &LandauPoint, resonance: &Resonance) -> Result<()> {
-    let scale = point.expansion.pair.scale.max(point.c0.norm());
+    let scale = slow_rate(point);
     if resonance.mean_flow <= SINGULAR * scale {
         return Err(Error::computation(format!(
             "the problem for X[0;2] is nearly singular: an eigenvalue of the mean problem lies {:.1e} from 2 a0. \

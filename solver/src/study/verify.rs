@@ -11,7 +11,7 @@ use crate::base::BaseState;
 use crate::collocation::coefficients;
 use crate::error::{Error, Result};
 use crate::model::C64;
-use crate::study::point::SINGULAR;
+use crate::study::point::{SINGULAR, slow_rate};
 use crate::weakly::{LandauPoint, Selection};
 use crate::words;
 use serde_json::{Value, json};
@@ -329,7 +329,7 @@ fn convergence(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<V
         ));
     }
     let resonance = resonance(point)?;
-    let scale = point.expansion.pair.scale.max(point.c0.norm());
+    let scale = slow_rate(point);
     let mut distance = |name: &str, value: f64, detail: &str| {
         checks.push(match value <= SINGULAR * scale {
             true => Check {
