@@ -236,6 +236,10 @@ impl Model for Planted {
         self.model.sources()
     }
 
+    fn laws(&self) -> Vec<(String, String)> {
+        self.model.laws()
+    }
+
     fn evaluate(&self, kernel: KernelId, point: &[f64], out: &mut [f64]) {
         self.model.evaluate(kernel, point, out);
         if kernel == KernelId::Nonlinear {

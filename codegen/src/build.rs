@@ -67,6 +67,14 @@ pub fn generate_folder(root: &Path, out: &Path) -> Result<(), String> {
     if !errors.is_empty() {
         return Err(errors);
     }
+    let shelf: String = laws
+        .values()
+        .map(|file| format!("    ({:?}, {:?}),\n", file.path, file.text))
+        .collect();
+    let _ = writeln!(
+        index,
+        "/// Path and text of every law file of this crate.\npub const LAWS: &[(&str, &str)] = &[\n{shelf}];"
+    );
     let _ = writeln!(
         index,
         "/// Every model of this crate.\npub fn models() -> Vec<Box<dyn landau_solver::Model>> {{\n    vec![\n{list}    ]\n}}"

@@ -2,8 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::model::{Model, TapeModel};
+use landau_codegen::Sources;
 use landau_codegen::build::read_sources;
-use landau_codegen::diagnostic::nearest;
+use landau_codegen::diagnostic::{SourceFile, nearest};
 use std::path::Path;
 
 /// The models of a crate.
@@ -12,6 +13,22 @@ pub struct Library {
 }
 
 impl Library {
+    /// A spec with the law files beside it, and those of the built models where none beside it has their name.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn sources(&self, path: &Path) -> Result<Sources> {
+        let mut sources = read_sources(path)
+            .map_err(|e| Error::input(format!("{} cannot be read: {e}", path.display())))?;
+        for (path, text) in self.models.iter().flat_map(|model| model.laws()) {
+            let name = Path::new(&path).file_stem().unwrap_or_default();
+            let name = name.to_string_lossy().into_owned();
+            let file = SourceFile { path, text };
+            sources.laws.entry(name).or_insert(file);
+        }
+        Ok(sources)
+    }
+
     /// Calls `action` with a built model by name, or with one run from the tape of its `.model` file.
     ///
     /// # Errors
@@ -27,8 +44,7 @@ impl Library {
         }
         let path = Path::new(name);
         if name.ends_with(".model") || path.is_file() {
-            let sources = read_sources(path)
-                .map_err(|e| Error::input(format!("{name} cannot be read: {e}")))?;
+            let sources = self.sources(path)?;
             let model = TapeModel::new(&sources)
                 .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
             return action(&model);

@@ -9,7 +9,8 @@ use crate::structure::{KernelId, Literal, ResidualId};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-/// The module of one model: a type that implements the solver's `Model` trait.
+/// The module of one model: a type that implements the solver's `Model` trait; its parent holds `LAWS`, the law
+/// files of the crate.
 pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
     let structure = model.structure.literal();
     let mut functions = TokenStream::new();
@@ -78,6 +79,10 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
 
             fn sources(&self) -> Vec<(String, String)> {
                 SOURCES.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect()
+            }
+
+            fn laws(&self) -> Vec<(String, String)> {
+                super::LAWS.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect()
             }
 
             fn evaluate(&self, kernel: s::KernelId, point: &[f64], out: &mut [f64]) {

@@ -2,11 +2,11 @@
 
 use super::arguments::{Format, OperatorName};
 use crate::error::{Error, Result};
+use crate::library::Library;
 use crate::model::{CaseInfo, ClosureKind, Model, TapeModel};
 use crate::reproduce::{Errata, Formulas, all_explained};
 use crate::study::Setup;
 use landau_codegen::Sources;
-use landau_codegen::build::read_sources;
 use landau_codegen::derive::Derivation;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::text::{self, Section, Typeset};
@@ -42,9 +42,8 @@ pub fn models(models: &[Box<dyn Model>], json: bool) -> Result<()> {
     Ok(())
 }
 
-pub fn check(file: &Path) -> Result<()> {
-    let sources = read_sources(file)
-        .map_err(|e| Error::input(format!("{} cannot be read: {e}", file.display())))?;
+pub fn check(library: &Library, file: &Path) -> Result<()> {
+    let sources = library.sources(file)?;
     let model = TapeModel::new(&sources)
         .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
     check_closed_base(&model)?;

@@ -52,7 +52,7 @@ pub fn run(models: Vec<Box<dyn Model>>) -> ExitCode {
 fn dispatch(library: &Library, command: Command) -> Result<()> {
     match command {
         Command::Models { json } => inspect::models(&library.models, json),
-        Command::Check { file } => inspect::check(&file),
+        Command::Check { file } => inspect::check(library, &file),
         Command::Explain {
             model,
             operator,

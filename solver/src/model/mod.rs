@@ -32,6 +32,9 @@ pub trait Model: Send + Sync {
     /// Path and text of the spec and of each law file it uses, the spec first.
     fn sources(&self) -> Vec<(String, String)>;
 
+    /// Path and text of every law file at hand where the model was made, used or not.
+    fn laws(&self) -> Vec<(String, String)>;
+
     /// Runs a real kernel at one point. `out` must hold [`output_length`] values.
     fn evaluate(&self, kernel: KernelId, point: &[f64], out: &mut [f64]);
 

@@ -12,6 +12,7 @@ use std::collections::HashMap;
 pub struct TapeModel {
     structure: Structure,
     sources: Vec<(String, String)>,
+    laws: Vec<(String, String)>,
     kernels: HashMap<KernelId, Kernel>,
     forms: Vec<Vec<Option<Kernel>>>,
     residuals: HashMap<ResidualId, Kernel>,
@@ -24,6 +25,8 @@ impl TapeModel {
     /// Everything that is wrong with the form of the spec.
     pub fn new(sources: &Sources) -> Result<Self, Diagnostics> {
         let (derivation, kernels) = generate(sources)?;
+        let shelf = sources.laws.values();
+        let laws = shelf.map(|f| (f.path.clone(), f.text.clone())).collect();
         let files = derivation.model.sources.iter();
         let sources = files.map(|f| (f.path.clone(), f.text.clone())).collect();
         let ModelKernels {
@@ -35,6 +38,7 @@ impl TapeModel {
         Ok(TapeModel {
             structure,
             sources,
+            laws,
             kernels: kernels.into_iter().collect(),
             forms,
             residuals: residuals.into_iter().collect(),
@@ -49,6 +53,10 @@ impl Model for TapeModel {
 
     fn sources(&self) -> Vec<(String, String)> {
         self.sources.clone()
+    }
+
+    fn laws(&self) -> Vec<(String, String)> {
+        self.laws.clone()
     }
 
     fn evaluate(&self, kernel: KernelId, point: &[f64], out: &mut [f64]) {
