@@ -208,11 +208,16 @@ impl<'m> Problem<'m> {
         values
     }
 
-    /// The rate at which the balances of slowest terms change their fields: Σ |coefficient| |k|^a (2/h)^d over
-    /// the mass, a median over the points.
+    /// The rate at which the balance of slowest terms changes its field: Σ |coefficient| |k|^a (2/h)^d over the
+    /// mass, a median over the points.
     pub fn rate(&self, k: f64) -> f64 {
         let rates = (0..self.direct.layout.rows.len()).map(|row| {
-            let terms = self.term_sizes(row, k, |jet| jet.t == 0);
+            // Terms of the fields whose time derivative the balance holds: others have units of their own.
+            let own = |jet: Jet| {
+                let mut mass = self.direct.terms.iter().filter(|(r, ..)| *r == row);
+                mass.any(|(_, other, _)| other.t > 0 && other.field == jet.field)
+            };
+            let terms = self.term_sizes(row, k, |jet| jet.t == 0 && own(jet));
             let mass = self.term_sizes(row, k, |jet| jet.t > 0);
             let rates = terms.iter().zip(mass).map(|(t, m)| t / m);
             median(rates.filter(|rate| rate.is_finite()).collect())
