@@ -1,3 +1,3 @@
 fn main() -> std::process::ExitCode {
-    landau_solver::cli::run(landau_spec::models())
+    landau_cli::run(landau_spec::models())
 }

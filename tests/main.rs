@@ -1,5 +1,6 @@
 //! The test families. Adding a case is adding a file (diagnostics, golden text) or a function.
 
+mod architecture;
 mod command_line;
 mod coverage;
 mod derivatives;

@@ -1,7 +1,7 @@
 //! The specs of `spec/RECIPES.md`, run against the numbers that stand beside them.
 
 use crate::support::{close, json, landau, number, root, written};
-use landau_solver::model::{End, Model, TapeModel};
+use landau_solver::model::{End, Model};
 use landau_solver::spectrum::leading;
 use landau_solver::study::Setup;
 use std::path::PathBuf;
@@ -81,7 +81,7 @@ fn stream_function() {
 #[test]
 fn blasius() {
     let sources = landau_codegen::build::read_sources(&recipe("blasius.model")).expect("a spec");
-    let model = TapeModel::new(&sources).expect("well formed");
+    let model = landau_codegen::tape(&sources).expect("well formed");
     let k = 0.3038 / 1.7207876573;
     let growth = |reynolds: f64| {
         let mut setup = Setup::new(&model, 90);

@@ -72,7 +72,7 @@ pub fn built(name: &str) -> Box<dyn Model> {
 pub fn tape(name: &str) -> TapeModel {
     let path = root().join(format!("spec/models/{name}.model"));
     let sources = landau_codegen::build::read_sources(&path).expect("the spec can be read");
-    TapeModel::new(&sources).expect("the spec is well formed")
+    landau_codegen::tape(&sources).expect("the spec is well formed")
 }
 
 /// |a − b| ≤ tolerance, with a message.

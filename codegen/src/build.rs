@@ -77,7 +77,7 @@ pub fn generate_folder(root: &Path, out: &Path) -> Result<(), String> {
     );
     let _ = writeln!(
         index,
-        "/// Every model of this crate.\npub fn models() -> Vec<Box<dyn landau_solver::Model>> {{\n    vec![\n{list}    ]\n}}"
+        "/// Every model of this crate.\npub fn models() -> Vec<Box<dyn landau_contract::Model>> {{\n    vec![\n{list}    ]\n}}"
     );
     fs::write(out.join("models.rs"), index).map_err(|e| e.to_string())
 }

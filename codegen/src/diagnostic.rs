@@ -3,14 +3,14 @@
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use std::ops::Range;
 
+pub use landau_contract::nearest;
+
 /// Mistakes that are told one by one.
 const MOST_TOLD: usize = 20;
 /// Longer texts and source lines are cut in the middle.
 const LONGEST_TEXT: usize = 400;
 /// What is kept of a long source line on either side of the caret.
 const WINDOW: usize = 60;
-/// Names beyond this length are no slips of others.
-const LONGEST_NAME: usize = 64;
 
 /// A spec or law file as the user wrote it.
 #[derive(Clone, Debug)]
@@ -164,36 +164,4 @@ fn clamp(text: &str, range: &Range<usize>) -> Range<usize> {
     let start = floor(range.start);
     let end = floor(range.end).max(start);
     start..end
-}
-
-/// The candidate nearest to `name`, if it is near enough to be a slip of the keyboard.
-pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    if name.len() > LONGEST_NAME {
-        return None;
-    }
-    candidates
-        .into_iter()
-        .filter(|candidate| candidate.len() <= LONGEST_NAME)
-        .map(|candidate| (distance(name, candidate), candidate))
-        .filter(|&(d, candidate)| {
-            d <= 1 + candidate.chars().count() / 4 && d < name.chars().count()
-        })
-        .min_by_key(|&(d, _)| d)
-        .map(|(_, candidate)| candidate)
-}
-
-/// Levenshtein distance.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, &y) in b.iter().enumerate() {
-            let substitution = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = substitution.min(row[j] + 1).min(row[j + 1] + 1);
-        }
-    }
-    row[b.len()]
 }

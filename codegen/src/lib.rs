@@ -21,10 +21,10 @@ pub mod errata;
 pub mod graph;
 pub mod kernel;
 pub mod model;
-pub mod structure;
 pub mod syntax;
 
 use diagnostic::{Diagnostics, SourceFile};
+use landau_contract::TapeModel;
 use std::collections::BTreeMap;
 
 /// Truncation order of the expansion: N2 and N3, which give the first Landau coefficient.
@@ -49,4 +49,18 @@ pub fn generate(
     let mut derivation = derive::derive(model, ORDER)?;
     let kernels = kernel::kernels(&mut derivation);
     Ok((derivation, kernels))
+}
+
+/// A spec as a model that interprets its kernels, without a build.
+///
+/// # Errors
+/// As [`generate`].
+pub fn tape(sources: &Sources) -> Result<TapeModel, Diagnostics> {
+    let (derivation, kernels) = generate(sources)?;
+    let texts = |files: &mut dyn Iterator<Item = &SourceFile>| -> Vec<(String, String)> {
+        files.map(|f| (f.path.clone(), f.text.clone())).collect()
+    };
+    let own = texts(&mut derivation.model.sources.iter());
+    let laws = texts(&mut sources.laws.values());
+    Ok(TapeModel::new(kernels, own, laws))
 }

@@ -2,9 +2,10 @@
 //!
 //! Data flows one way, one module a stage:
 //!
-//! [`model`] (kernels, number types) → [`base`] (base state) → [`collocation`] and [`problem`]
+//! [`model`] (the contract: kernels, number types) → [`base`] (base state) → [`collocation`] and [`problem`]
 //! (matrices, as [`pencil`]s) → [`spectrum`] (modes) → [`weakly`] (amplitude expansion, Landau coefficients) →
-//! [`study`] (critical points, sweeps, certificate) → [`figure`], [`data`] → [`reproduce`] → [`cli`].
+//! [`study`] (points, critical points, sweeps, certificate). Numerics alone: figures, reports and the command line
+//! stand above, in crates of their own.
 //!
 //! ```
 //! use landau_solver::model::C64;
@@ -24,21 +25,16 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod base;
-pub mod cli;
 pub mod collocation;
-pub mod data;
 pub mod dense;
 pub mod error;
-pub mod figure;
 pub mod file;
-pub mod library;
-pub mod model;
 pub mod parameters;
 pub mod pencil;
 pub mod problem;
-pub mod reproduce;
 pub mod spectrum;
 pub mod study;
 pub mod weakly;
 pub mod words;
+pub use landau_contract as model;
 pub use model::Model;

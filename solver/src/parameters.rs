@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::Structure;
-use landau_codegen::diagnostic::nearest;
+use crate::model::nearest;
 
 /// Values of all parameters of a model; those set to `auto` are still to be determined.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,6 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use landau_codegen::build::{generate_module, read_sources};
 use landau_solver::Model;
 use landau_solver::collocation::Discretisation;
-use landau_solver::model::TapeModel;
 use landau_solver::problem::Problem;
 use landau_solver::study::Setup;
 use landau_solver::weakly::{Selection, point, warm_point};
@@ -38,7 +37,7 @@ fn benches(criterion: &mut Criterion) {
         bed.as_ref(),
     );
     let sources = read_sources(&folder.join("vibrated_bed.model")).expect("the spec");
-    let tape = TapeModel::new(&sources).expect("a well-formed spec");
+    let tape = landau_codegen::tape(&sources).expect("a well-formed spec");
     warm(criterion, "warm Landau point, M = 50, tape", &tape);
     criterion.bench_function("base state", |b| {
         let setup = Setup::new(bed.as_ref(), 50);

@@ -2,5 +2,6 @@
 
 pub mod difference;
 mod grouped;
+pub mod literal;
 pub mod rust;
 pub mod text;

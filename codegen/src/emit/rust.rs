@@ -2,10 +2,11 @@
 //!
 //! Every kernel is a function of straight-line code; the equations stand in its documentation.
 
+use super::literal::Literal;
 use super::text;
 use crate::derive::Derivation;
 use crate::kernel::{Kernel, ModelKernels, Operation};
-use crate::structure::{KernelId, Literal, ResidualId};
+use landau_contract::{KernelId, ResidualId};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -51,7 +52,7 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
         quote!((#path, #text))
     });
     let code = quote! {
-        use landau_solver::model as s;
+        use landau_contract as s;
         use s::{C64, Number};
 
         /// The generated operators, for the solver.

@@ -1,58 +1,8 @@
 //! What an expression can be.
 
 use super::Id;
+pub use landau_contract::{Function, Jet, Operator};
 pub use num_rational::BigRational as Rational;
-
-/// A derivative of a field: ∂x^x |∂x|^absx ∂y^y ∂t^t of field number `field`.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub struct Jet {
-    pub field: u8,
-    pub t: u8,
-    pub x: u8,
-    pub absx: u8,
-    pub y: u8,
-}
-
-impl Jet {
-    /// The field itself.
-    pub fn value(field: usize) -> Self {
-        Jet {
-            field: field as u8,
-            t: 0,
-            x: 0,
-            absx: 0,
-            y: 0,
-        }
-    }
-
-    /// Whether a y-dependent base state has this jet (no x or t in it).
-    pub fn is_base(self) -> bool {
-        self.t == 0 && self.x == 0 && self.absx == 0
-    }
-
-    /// The jet with |∂x|² written as −∂x², and whether the sign changes.
-    pub fn canonical(self) -> (Self, bool) {
-        let pairs = self.absx / 2;
-        let jet = Jet {
-            x: self.x + 2 * pairs,
-            absx: self.absx % 2,
-            ..self
-        };
-        (jet, pairs % 2 == 1)
-    }
-
-    /// The jet with one more derivative.
-    pub fn derived(self, operator: Operator) -> Self {
-        let mut jet = self;
-        match operator {
-            Operator::Dx => jet.x += 1,
-            Operator::Dy => jet.y += 1,
-            Operator::Dt => jet.t += 1,
-            Operator::AbsDx => jet.absx += 1,
-        }
-        jet
-    }
-}
 
 /// A constitutive law kept opaque, with derivative indices: p⁰_nny is
 /// `LawAtom { law: p, index: [2, 0, …], y: 1 }`.
@@ -78,58 +28,6 @@ impl LawAtom {
         LawAtom {
             y: self.y + 1,
             ..self.clone()
-        }
-    }
-}
-
-/// Differential operators of the spec language.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub enum Operator {
-    Dx,
-    Dy,
-    Dt,
-    AbsDx,
-}
-
-/// Elementary functions (√ is a power).
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub enum Function {
-    Exp,
-    Log,
-    Sin,
-    Cos,
-    Tan,
-    Sinh,
-    Cosh,
-    Tanh,
-    Atan,
-}
-
-impl Function {
-    pub const ALL: [Function; 9] = [
-        Function::Exp,
-        Function::Log,
-        Function::Sin,
-        Function::Cos,
-        Function::Tan,
-        Function::Sinh,
-        Function::Cosh,
-        Function::Tanh,
-        Function::Atan,
-    ];
-
-    /// The name in the spec language.
-    pub fn name(self) -> &'static str {
-        match self {
-            Function::Exp => "exp",
-            Function::Log => "log",
-            Function::Sin => "sin",
-            Function::Cos => "cos",
-            Function::Tan => "tan",
-            Function::Sinh => "sinh",
-            Function::Cosh => "cosh",
-            Function::Tanh => "tanh",
-            Function::Atan => "atan",
         }
     }
 }

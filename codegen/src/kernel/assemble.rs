@@ -1,21 +1,12 @@
 //! All kernels of a model, and the structure that says what their inputs and outputs mean.
 
-use super::Kernel;
+use super::ModelKernels;
 use super::polarise::form_tables;
 use crate::derive::{CaseClosure, Derivation, Opener, base_value};
 use crate::graph::{Graph, Id, Jet, Node, Variable};
 use crate::model::Amplitude;
-use crate::structure::*;
+use landau_contract::*;
 use std::collections::BTreeSet;
-
-/// The kernels of a model with their structure.
-pub struct ModelKernels {
-    pub structure: Structure,
-    pub kernels: Vec<(KernelId, Kernel)>,
-    /// `forms[d − 2][row]`
-    pub forms: Vec<Vec<Option<Kernel>>>,
-    pub residuals: Vec<(ResidualId, Kernel)>,
-}
 
 /// Opens the laws and lowers every operator.
 pub fn kernels(derivation: &mut Derivation) -> ModelKernels {

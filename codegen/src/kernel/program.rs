@@ -1,11 +1,11 @@
 //! The last pass: opened outputs, residuals and polarised forms → straight-line kernels.
 
+use super::Lowering;
 use super::assemble::Assembler;
 use super::polarise::{form_tables, polarise};
-use super::{Array, Kernel, Lowering, ModelKernels};
 use crate::derive::base_value;
-use crate::graph::{Graph, Id, Jet, Node};
-use crate::structure::*;
+use crate::graph::{Graph, Id, Node};
+use landau_contract::*;
 use std::collections::{BTreeSet, HashMap};
 
 impl Assembler<'_> {

@@ -11,21 +11,11 @@ mod scope;
 mod statement;
 mod switch;
 
+pub use landau_contract::End;
 pub use resolve::resolve;
 
 use crate::diagnostic::Location;
 use crate::graph::{Graph, Id, Notation, Printer};
-
-/// An end of the cross-stream interval.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
-pub enum End {
-    Lower,
-    Upper,
-}
-
-impl End {
-    pub const BOTH: [End; 2] = [End::Lower, End::Upper];
-}
 
 /// A model whose form has been checked as far as names go.
 pub struct Model {

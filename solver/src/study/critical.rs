@@ -1,13 +1,12 @@
 //! Critical points along an axis: where growth or c2 changes sign, where c2 jumps through infinity.
 
 use super::root::brent;
-use super::{Axis, Carried, Setup};
+use super::{Axis, Carried, Progress, Setup};
 use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum::EigenPair;
 use crate::weakly::{self, Selection};
-use indicatif::ProgressBar;
 
 /// Points at which an interval is scanned for sign changes.
 const SCAN: usize = 61;
@@ -96,11 +95,11 @@ impl Sampler<'_, '_> {
     }
 
     /// The mode that is most unstable somewhere in the interval.
-    fn seed(&self, points: &[f64], progress: &ProgressBar) -> Result<(usize, Sample)> {
+    fn seed(&self, points: &[f64], progress: &dyn Progress) -> Result<(usize, Sample)> {
         let mut best: Option<(usize, Sample)> = None;
         let mut last = None;
         for index in (0..points.len()).step_by(STRIDE) {
-            progress.inc(1);
+            progress.advance(1);
             match self.sample(points[index], None) {
                 Ok(sample) => {
                     if best.as_ref().is_none_or(|(_, b)| sample.c0.re > b.c0.re) {
@@ -117,12 +116,12 @@ impl Sampler<'_, '_> {
     }
 
     /// Samples on both sides of the seed as far as the mode can be followed.
-    fn scan(&self, points: &[f64], progress: &ProgressBar) -> Result<Vec<Sample>> {
+    fn scan(&self, points: &[f64], progress: &dyn Progress) -> Result<Vec<Sample>> {
         let (start, seed) = self.seed(points, progress)?;
         let walk = |indices: &mut dyn Iterator<Item = usize>| {
             let mut found: Vec<Sample> = Vec::new();
             for index in indices {
-                progress.inc(1);
+                progress.advance(1);
                 let near = found.last().unwrap_or(&seed).carried.clone();
                 match self.sample(points[index], Some(&near)) {
                     Ok(sample) => found.push(sample),
@@ -223,13 +222,13 @@ impl Sampler<'_, '_> {
 pub fn critical(
     setup: &Setup,
     question: Question,
-    progress: &ProgressBar,
+    progress: &dyn Progress,
 ) -> Result<Vec<Critical>> {
     let sampler = Sampler { setup, question };
     let points: Vec<f64> = (0..SCAN)
         .map(|i| question.from + (question.to - question.from) * i as f64 / (SCAN - 1) as f64)
         .collect();
-    progress.set_length((SCAN + SCAN.div_ceil(STRIDE)) as u64);
+    progress.begin(SCAN + SCAN.div_ceil(STRIDE));
     let samples = sampler.scan(&points, progress)?;
     let mut found = Vec::new();
     for pair in samples.windows(2) {
@@ -237,7 +236,7 @@ pub fn critical(
             found.extend(sampler.refine(&pair[0], &pair[1])?);
         }
     }
-    progress.finish_and_clear();
+    progress.end();
     if !found.is_empty() {
         return Ok(found);
     }

@@ -3,13 +3,12 @@
 use super::critical::{Critical, Question, Sample, Sampler, TOLERANCE};
 use super::root::brent;
 use super::sensitivity::wavenumber;
-use super::{Carried, Setup};
+use super::{Carried, Progress, Setup};
 use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
 use crate::weakly::{self, Selection};
-use indicatif::ProgressBar;
 
 /// Values of the parameter that are scanned.
 const SCAN: usize = 12;
@@ -40,9 +39,9 @@ pub fn minimise(
     setup: &Setup,
     question: Question,
     range: (f64, f64),
-    progress: &ProgressBar,
+    progress: &dyn Progress,
 ) -> Result<Critical> {
-    progress.set_length(SCAN as u64 + 1);
+    progress.begin(SCAN + 1);
     let search = Search {
         setup,
         question,
@@ -52,7 +51,7 @@ pub fn minimise(
     let mut trouble = None;
     let mut seen: Vec<(f64, f64)> = Vec::new();
     for step in 0..=SCAN {
-        progress.inc(1);
+        progress.advance(1);
         let x = question.from + (question.to - question.from) * step as f64 / SCAN as f64;
         // Each scan point looks over the whole range of k, in case another mode takes over.
         let crest = match search.crest(x, None) {
@@ -67,7 +66,7 @@ pub fn minimise(
             && last.growth() * crest.growth() <= 0.0
         {
             let found = search.refine((before, last), (x, crest))?;
-            progress.finish_and_clear();
+            progress.end();
             return Ok(found);
         }
         previous = Some((x, crest));

@@ -6,14 +6,13 @@
 
 use super::journal::Journal;
 use super::point::UNCONVERGED;
-use super::{Axis, Carried, Setup};
+use super::{Axis, Carried, Progress, Setup};
 use crate::error::{Error, Result};
 use crate::file::destination;
 use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
 use crate::weakly::{self, Bifurcation, LandauPoint, Selection, equilibrium};
-use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -123,7 +122,7 @@ impl Sweep<'_, '_> {
     }
 
     /// Computes every row.
-    pub fn run(&self, progress: &ProgressBar) -> Vec<Row> {
+    pub fn run(&self, progress: &dyn Progress) -> Vec<Row> {
         self.run_chunks(&BTreeMap::new(), progress, &|_, _| {})
     }
 
@@ -168,7 +167,7 @@ impl Sweep<'_, '_> {
     pub fn run_to(
         &self,
         out: &Path,
-        progress: &ProgressBar,
+        progress: &dyn Progress,
         resumed: impl FnOnce(Resumed),
     ) -> Result<Vec<Row>> {
         let target = destination(out)?;
@@ -194,15 +193,15 @@ impl Sweep<'_, '_> {
     fn run_chunks(
         &self,
         known: &BTreeMap<usize, Vec<Row>>,
-        progress: &ProgressBar,
+        progress: &dyn Progress,
         record: &(dyn Fn(usize, &[Row]) + Sync),
     ) -> Vec<Row> {
-        progress.set_length(self.len() as u64);
+        progress.begin(self.len());
         let chunks: Vec<Vec<Row>> = (0..self.chunk_count())
             .into_par_iter()
             .map(|chunk| {
                 if let Some(rows) = known.get(&chunk) {
-                    progress.inc(rows.len() as u64);
+                    progress.advance(rows.len());
                     return rows.clone();
                 }
                 let rows = self.chunk(chunk, progress);
@@ -210,7 +209,7 @@ impl Sweep<'_, '_> {
                 rows
             })
             .collect();
-        progress.finish_and_clear();
+        progress.end();
         chunks.into_iter().flatten().collect()
     }
 
@@ -232,7 +231,7 @@ impl Sweep<'_, '_> {
             .collect()
     }
 
-    fn chunk(&self, chunk: usize, progress: &ProgressBar) -> Vec<Row> {
+    fn chunk(&self, chunk: usize, progress: &dyn Progress) -> Vec<Row> {
         let places = self.places(chunk);
         if self.ranges[0].axis != Axis::Wavenumber {
             let step = |place: &[f64], near: Option<&Carried>| self.evaluate(place, near);
@@ -257,7 +256,7 @@ impl Sweep<'_, '_> {
             ))
         });
         line.unwrap_or_else(|error| {
-            progress.inc(places.len() as u64);
+            progress.advance(places.len());
             places
                 .into_iter()
                 .map(|place| failed(place, &error))
@@ -450,7 +449,7 @@ fn follow<C>(
     places: &[Vec<f64>],
     growth: impl Fn(&C) -> f64,
     step: impl Fn(&[f64], Option<&C>) -> Result<(Row, C)>,
-    progress: &ProgressBar,
+    progress: &dyn Progress,
 ) -> Vec<Row> {
     let last = places.len() - 1;
     let ends = [0, last].map(|i| step(&places[i], None));
@@ -476,7 +475,7 @@ fn follow<C>(
             }
             Err(error) => failed(places[index].clone(), &error),
         });
-        progress.inc(1);
+        progress.advance(1);
     }
     rows.into_iter().flatten().collect()
 }

@@ -1,0 +1,22 @@
+//! What generated models and the solver agree on: structure, jets, kernels as data with their interpreter, number
+//! types, and the trait that emitted code and a model run from its tape both implement.
+//!
+//! Nothing here knows where kernels come from, or what is done with them.
+
+mod jet;
+mod kernel;
+mod model;
+mod nearest;
+mod number;
+mod rounding;
+mod structure;
+mod tape;
+
+pub use jet::{End, Function, Jet, Operator, jet};
+pub use kernel::{Array, Kernel, ModelKernels, Operation, Register};
+pub use model::{Model, ResidualCall, choose, evaluate, output_length};
+pub use nearest::nearest;
+pub use number::{C64, Number, SERIES_LENGTH, Series, Truncated};
+pub use rounding::WithRounding;
+pub use structure::*;
+pub use tape::TapeModel;

@@ -1,0 +1,100 @@
+//! A model as the solver sees it: a structure and kernels.
+//!
+//! Generated code and a model run from its tape implement the same object-safe trait; nothing below
+//! this module knows where the kernels come from, or which model they belong to.
+
+use crate::number::{C64, Series};
+use crate::rounding::WithRounding;
+use crate::structure::{BaseJet, KernelId, ResidualId, Structure};
+
+/// A residual call for one of the number types of the closed list: inputs are the jets of
+/// [`Structure::residual_jets`], outputs one value a balance or condition.
+pub enum ResidualCall<'a> {
+    Real(&'a [f64], &'a mut [f64]),
+    /// With a bound of the rounding errors.
+    Rounding(&'a [WithRounding], &'a mut [WithRounding]),
+    /// Truncated power series with complex coefficients.
+    Series(&'a [Series], &'a mut [Series]),
+}
+
+/// The interface between a model and the solver.
+///
+/// Real kernels read the point state described at [`KernelId`]; coefficient units are the model's.
+pub trait Model: Send + Sync {
+    /// Fields, parameters, operator layouts.
+    fn structure(&self) -> &Structure;
+
+    /// Path and text of the spec and of each law file it uses, the spec first.
+    fn sources(&self) -> Vec<(String, String)>;
+
+    /// Path and text of every law file at hand where the model was made, used or not.
+    fn laws(&self) -> Vec<(String, String)>;
+
+    /// Runs a real kernel at one point. `out` must hold [`output_length`] values.
+    fn evaluate(&self, kernel: KernelId, point: &[f64], out: &mut [f64]);
+
+    /// N_degree of one balance as a symmetric multilinear form: `c` are the outputs of
+    /// [`KernelId::Nonlinear`], `x` one slice of [`Structure::form_jets`] an argument.
+    fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64;
+
+    /// The unexpanded residual M ∂t X − R (not divided), or left − right of the conditions.
+    fn residual(&self, residual: ResidualId, point: &[f64], call: ResidualCall<'_>);
+}
+
+/// Number of outputs of a real kernel.
+pub fn output_length(structure: &Structure, kernel: KernelId) -> usize {
+    let jets = |list: &Vec<BaseJet>| 1 + list.len();
+    match kernel {
+        KernelId::Interval => 2,
+        KernelId::Closed => structure.fields.len() * (structure.base_order + 1),
+        KernelId::Guess => structure.base.solved.len(),
+        KernelId::Base => structure.base.rows.iter().map(|r| jets(&r.jets)).sum(),
+        KernelId::BaseIntegrals => structure.base.integrals.iter().map(|i| jets(i) + 1).sum(),
+        KernelId::Automatic => structure.base.automatic.len(),
+        KernelId::BaseConditions(case) => structure.cases[case]
+            .base_conditions
+            .iter()
+            .map(|c| jets(&c.jets))
+            .sum(),
+        KernelId::Divisors => structure.balances.len(),
+        KernelId::Linear => structure.linear.len(),
+        KernelId::Adjoint => structure.adjoint.len(),
+        KernelId::Nonlinear => structure.form_coefficients,
+        KernelId::Conditions(case) => structure.cases[case]
+            .conditions
+            .iter()
+            .map(|c| c.monomials.len())
+            .sum(),
+        KernelId::AdjointConditions(case) => match &structure.cases[case].adjoint {
+            Ok(conditions) => conditions.iter().map(|c| c.jets.len()).sum(),
+            Err(_) => 0,
+        },
+        KernelId::Closures(case) => structure.cases[case]
+            .closures
+            .iter()
+            .map(|c| c.density.len() + c.column.len())
+            .sum(),
+        KernelId::Amplitude => match structure.amplitude.field {
+            Some(_) => 2,
+            None => structure.amplitude.weighted.len() + 1,
+        },
+        KernelId::Outputs => structure
+            .outputs
+            .iter()
+            .map(|o| 1 + o.monomials.len())
+            .sum(),
+    }
+}
+
+/// Runs a real kernel at one point into a new vector.
+pub fn evaluate(model: &dyn Model, kernel: KernelId, point: &[f64]) -> Vec<f64> {
+    let mut out = vec![0.0; output_length(model.structure(), kernel)];
+    model.evaluate(kernel, point, &mut out);
+    out
+}
+
+/// The branch that a switch parameter selects (emitted code calls this).
+pub fn choose<T: Clone>(switch: f64, branches: &[T]) -> T {
+    let last = branches.len() - 1;
+    branches[(switch.max(0.0).round() as usize).min(last)].clone()
+}

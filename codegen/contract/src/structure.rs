@@ -1,0 +1,286 @@
+//! The shape of a generated model: what the solver has to know besides the kernels.
+//!
+//! The same types serve the emitted code (where they are written out as literals) and a model that
+//! runs from its tape.
+
+use crate::jet::{End, Jet};
+
+/// Everything about a model that is not a kernel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Structure {
+    pub name: String,
+    pub title: String,
+    /// Highest degree of the nonlinear forms.
+    pub order: usize,
+    pub periodic: String,
+    /// The cross-stream coordinate, if there is one.
+    pub coordinate: Option<String>,
+    /// Profiles first, then unknown numbers.
+    pub fields: Vec<FieldInfo>,
+    pub parameters: Vec<ParameterInfo>,
+    pub balances: Vec<String>,
+    /// Highest y-derivative of base fields that kernels ask for.
+    pub base_order: usize,
+    pub base: BaseInfo,
+    /// Points of the balances and values of the profiles in L.
+    pub offsets: OffsetsInfo,
+    /// The same for L†: rows are fields, columns balances.
+    pub adjoint_offsets: OffsetsInfo,
+    pub parity: Option<ParityInfo>,
+    /// L (no ∂t) and M0 (one ∂t); coefficients from [`KernelId::Linear`] in this order.
+    pub linear: Vec<TermInfo>,
+    /// L† and M0†; rows are fields, `jet.field` is a balance.
+    pub adjoint: Vec<TermInfo>,
+    /// The jets that the nonlinear forms read, in the order of their arguments.
+    pub form_jets: Vec<Jet>,
+    /// Number of outputs of [`KernelId::Nonlinear`].
+    pub form_coefficients: usize,
+    /// `forms[d − 2][row]`: whether N_d has terms in that row.
+    pub forms: Vec<Vec<bool>>,
+    /// The jets that the unexpanded residual reads.
+    pub residual_jets: Vec<Jet>,
+    /// Parameters (switches) that select the case.
+    pub switches: Vec<usize>,
+    pub cases: Vec<CaseInfo>,
+    pub amplitude: AmplitudeInfo,
+    pub outputs: Vec<OutputInfo>,
+    pub typical: Option<TypicalInfo>,
+    /// Operations of all kernels as written, and after common subexpressions are shared.
+    pub operations: Vec<usize>,
+}
+
+/// A wavenumber that shows what the model is about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TypicalInfo {
+    pub k: f64,
+    /// Real and imaginary part of the eigenvalue that its mode is near to; empty for the leading one.
+    pub near: Vec<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldInfo {
+    pub name: String,
+    pub doc: String,
+    /// Range that a base state must keep.
+    pub lower: f64,
+    pub upper: f64,
+    /// A number rather than a profile.
+    pub uniform: bool,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterInfo {
+    pub name: String,
+    pub doc: String,
+    pub default: f64,
+    pub lower: f64,
+    pub upper: f64,
+    /// Names of the values of a switch.
+    pub choices: Vec<String>,
+    /// Whether a base condition can determine it (`auto`).
+    pub automatic: bool,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseInfo {
+    /// Fields that are solved for; profiles first.
+    pub solved: Vec<usize>,
+    /// Whether each field has a closed form.
+    pub closed: Vec<bool>,
+    pub rows: Vec<BaseRowInfo>,
+    /// Points of `rows` and values of the profiles among `solved`.
+    pub offsets: OffsetsInfo,
+    /// Base jets that each integrand depends on.
+    pub integrals: Vec<Vec<BaseJet>>,
+    /// Parameter and end of each automatic condition.
+    pub automatic: Vec<AutomaticInfo>,
+}
+
+/// Row i is collocated at N + `rows[i]` points, column j has N + `columns[j]` values; as many
+/// conditions as the values are more than the points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OffsetsInfo {
+    pub rows: Vec<usize>,
+    pub columns: Vec<usize>,
+}
+
+/// ∂y^order of a base field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseJet {
+    pub field: usize,
+    pub order: usize,
+}
+
+/// One balance of the base state: [`KernelId::Base`] gives its residual, then its derivative by
+/// each of `jets`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseRowInfo {
+    pub balance: usize,
+    pub jets: Vec<BaseJet>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct AutomaticInfo {
+    pub parameter: usize,
+    pub end: End,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParityInfo {
+    pub fields: Vec<bool>,
+    pub rows: Vec<bool>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct TermInfo {
+    pub row: usize,
+    pub jet: Jet,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct CaseInfo {
+    /// The choice of each structural switch.
+    pub choices: Vec<usize>,
+    /// [`KernelId::BaseConditions`]: residual, then its derivative by each jet.
+    pub base_conditions: Vec<BaseConditionInfo>,
+    /// The ends of the conditions of [`ResidualId::BaseChecks`].
+    pub base_checks: Vec<End>,
+    /// [`KernelId::Conditions`]: one coefficient a monomial.
+    pub conditions: Vec<ConditionInfo>,
+    /// [`KernelId::AdjointConditions`]: one coefficient a jet; or why there are none.
+    pub adjoint: Result<Vec<AdjointConditionInfo>, String>,
+    /// [`KernelId::Closures`]: densities, then columns, of each.
+    pub closures: Vec<ClosureInfo>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseConditionInfo {
+    pub end: End,
+    pub jets: Vec<BaseJet>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionInfo {
+    pub end: End,
+    /// Monomials of degree 1, 2, 3, …
+    pub monomials: Vec<Vec<Jet>>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct AdjointConditionInfo {
+    pub end: End,
+    pub jets: Vec<Jet>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClosureInfo {
+    pub kind: ClosureKind,
+    /// The gauge or the unknown.
+    pub field: Option<usize>,
+    pub density: Vec<Jet>,
+    /// Balances that the multiplier enters.
+    pub column: Vec<usize>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct AmplitudeInfo {
+    /// Fields with a weight in ∫ Σ w|q|² dy; empty for a point value.
+    pub weighted: Vec<usize>,
+    /// The field of a point value.
+    pub field: Option<usize>,
+    /// What is printed beside every coefficient.
+    pub description: String,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputInfo {
+    pub name: String,
+    pub doc: String,
+    /// Evaluated at a place, rather than integrated.
+    pub at_point: bool,
+    /// Monomials of degree 0 (empty), 1, 2, …
+    pub monomials: Vec<Vec<Jet>>,
+}
+
+/// The kinds of closure at k = 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ClosureKind {
+    Conserved,
+    /// Said to be conserved: recognised in the collocated problem, or dropped.
+    Claimed,
+    Gauge,
+    /// A gauge with a time derivative: its multiplier is the rate at which the constant drifts.
+    Drift,
+    Unknown,
+}
+
+/// The real kernels of a model. All read the point state
+/// `[y, k, parameters…, base field 0 and its y-derivatives to base_order, base field 1, …]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum KernelId {
+    /// The two ends of the interval.
+    Interval,
+    /// Closed-form fields and their y-derivatives, in point-state order; zeros for solved ones.
+    Closed,
+    /// A starting value for each solved field.
+    Guess,
+    /// Base balances with their Jacobian.
+    Base,
+    /// Integrands of the base with their Jacobian, then the prescribed value, one after another.
+    BaseIntegrals,
+    /// Conditions that determine automatic parameters.
+    Automatic,
+    /// Conditions of the base in one case, with their Jacobian.
+    BaseConditions(usize),
+    /// What each balance is divided by.
+    Divisors,
+    Linear,
+    Adjoint,
+    Nonlinear,
+    /// Coefficients of the boundary conditions of one case.
+    Conditions(usize),
+    AdjointConditions(usize),
+    Closures(usize),
+    /// Weights, then the prescribed value, then the place.
+    Amplitude,
+    /// For each output its place, then its coefficients.
+    Outputs,
+}
+
+/// The unexpanded residuals of a model, for all number types.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ResidualId {
+    /// One value a balance, not divided.
+    Balances,
+    /// One value a boundary condition of a case, in the order of its conditions.
+    Conditions(usize),
+    /// One value a condition that the base state of a case, being in closed form, has to meet.
+    BaseChecks(usize),
+}
+
+impl Structure {
+    /// Length of the point state.
+    pub fn state_length(&self) -> usize {
+        2 + self.parameters.len() + self.fields.len() * (self.base_order + 1)
+    }
+
+    /// Position of a base jet in the point state.
+    pub fn base_position(&self, field: usize, order: usize) -> usize {
+        2 + self.parameters.len() + field * (self.base_order + 1) + order
+    }
+
+    /// The value of a jet in the base state at a point: zero for one with ∂x or ∂t in it.
+    pub fn base_jet(&self, jet: Jet, point: &[f64]) -> f64 {
+        let order = usize::from(jet.y);
+        if jet.is_base() && order <= self.base_order {
+            point[self.base_position(usize::from(jet.field), order)]
+        } else {
+            0.0
+        }
+    }
+
+    /// Number of profiles among the fields.
+    pub fn profiles(&self) -> usize {
+        self.fields.iter().filter(|f| !f.uniform).count()
+    }
+}

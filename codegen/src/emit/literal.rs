@@ -1,0 +1,162 @@
+//! The structure of a model written out as Rust source, with the contract's types in scope as `s`.
+
+use landau_contract::*;
+use proc_macro2::TokenStream;
+use quote::quote;
+
+/// A value that can be written out as Rust source.
+pub trait Literal {
+    fn literal(&self) -> TokenStream;
+}
+
+/// Every field of a structure, by name: one that is missing here does not compile.
+macro_rules! literals {
+    ($($name:ident { $($field:ident),* })*) => {
+        $(impl Literal for $name {
+            fn literal(&self) -> TokenStream {
+                let $name { $($field),* } = self;
+                let mut fields = TokenStream::new();
+                $({
+                    let name = quote::format_ident!("{}", stringify!($field));
+                    let value = $field.literal();
+                    fields.extend(quote!(#name: #value,));
+                })*
+                let name = quote::format_ident!("{}", stringify!($name));
+                quote!(s::#name { #fields })
+            }
+        })*
+    };
+}
+
+literals! {
+    Structure { name, title, order, periodic, coordinate, fields, parameters, balances, base_order, base, offsets, adjoint_offsets, parity, linear, adjoint, form_jets, form_coefficients, forms, residual_jets, switches, cases, amplitude, outputs, typical, operations }
+    TypicalInfo { k, near }
+    FieldInfo { name, doc, lower, upper, uniform }
+    ParameterInfo { name, doc, default, lower, upper, choices, automatic }
+    BaseInfo { solved, closed, rows, offsets, integrals, automatic }
+    OffsetsInfo { rows, columns }
+    BaseJet { field, order }
+    BaseRowInfo { balance, jets }
+    AutomaticInfo { parameter, end }
+    ParityInfo { fields, rows }
+    TermInfo { row, jet }
+    CaseInfo { choices, base_conditions, base_checks, conditions, adjoint, closures }
+    BaseConditionInfo { end, jets }
+    ConditionInfo { end, monomials }
+    AdjointConditionInfo { end, jets }
+    ClosureInfo { kind, field, density, column }
+    AmplitudeInfo { weighted, field, description }
+    OutputInfo { name, doc, at_point, monomials }
+}
+
+impl Literal for usize {
+    fn literal(&self) -> TokenStream {
+        let value = proc_macro2::Literal::usize_unsuffixed(*self);
+        quote!(#value)
+    }
+}
+
+impl Literal for u8 {
+    fn literal(&self) -> TokenStream {
+        let value = proc_macro2::Literal::u8_unsuffixed(*self);
+        quote!(#value)
+    }
+}
+
+impl Literal for bool {
+    fn literal(&self) -> TokenStream {
+        quote!(#self)
+    }
+}
+
+impl Literal for f64 {
+    fn literal(&self) -> TokenStream {
+        if *self == f64::INFINITY {
+            quote!(f64::INFINITY)
+        } else if *self == f64::NEG_INFINITY {
+            quote!(f64::NEG_INFINITY)
+        } else {
+            let size = proc_macro2::Literal::f64_unsuffixed(self.abs());
+            if self.is_sign_negative() {
+                quote!(-#size)
+            } else {
+                quote!(#size)
+            }
+        }
+    }
+}
+
+impl Literal for String {
+    fn literal(&self) -> TokenStream {
+        quote!(String::from(#self))
+    }
+}
+
+impl<T: Literal> Literal for Vec<T> {
+    fn literal(&self) -> TokenStream {
+        let items = self.iter().map(Literal::literal);
+        quote!(vec![#(#items),*])
+    }
+}
+
+impl<T: Literal> Literal for Option<T> {
+    fn literal(&self) -> TokenStream {
+        match self {
+            Some(value) => {
+                let value = value.literal();
+                quote!(Some(#value))
+            }
+            None => quote!(None),
+        }
+    }
+}
+
+impl<T: Literal, E: Literal> Literal for Result<T, E> {
+    fn literal(&self) -> TokenStream {
+        match self {
+            Ok(value) => {
+                let value = value.literal();
+                quote!(Ok(#value))
+            }
+            Err(error) => {
+                let error = error.literal();
+                quote!(Err(#error))
+            }
+        }
+    }
+}
+
+impl Literal for Jet {
+    fn literal(&self) -> TokenStream {
+        let Jet {
+            field,
+            t,
+            x,
+            absx,
+            y,
+        } = self;
+        let [field, t, x, absx, y] = [field, t, x, absx, y].map(Literal::literal);
+        quote!(s::jet(#field, #t, #x, #absx, #y))
+    }
+}
+
+impl Literal for End {
+    fn literal(&self) -> TokenStream {
+        match self {
+            End::Lower => quote!(s::End::Lower),
+            End::Upper => quote!(s::End::Upper),
+        }
+    }
+}
+
+impl Literal for ClosureKind {
+    fn literal(&self) -> TokenStream {
+        match self {
+            ClosureKind::Conserved => quote!(s::ClosureKind::Conserved),
+            ClosureKind::Claimed => quote!(s::ClosureKind::Claimed),
+            ClosureKind::Gauge => quote!(s::ClosureKind::Gauge),
+            ClosureKind::Drift => quote!(s::ClosureKind::Drift),
+            ClosureKind::Unknown => quote!(s::ClosureKind::Unknown),
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! Commands and options.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use landau_solver::model::C64;
+use std::path::PathBuf;
+
+/// From balance equations to amplitude equations.
+#[derive(Parser)]
+#[command(name = "landau", version, about, max_term_width = 100)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// List the models that are built in.
+    Models {
+        /// Print one JSON array.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Diagnose a spec without building it.
+    #[command(after_help = "Example: landau check my.model")]
+    Check { file: PathBuf },
+    /// Print the derived operators.
+    #[command(
+        after_help = "Examples:\n  landau explain my.model --operator adjoint\n  landau explain my.model --format latex\n  landau explain my.model --against errata/mine.toml"
+    )]
+    Explain {
+        /// A built model, or the path of a .model file.
+        model: String,
+        /// Which operator; all of them by default.
+        #[arg(long, value_enum, ignore_case = true)]
+        operator: Option<OperatorName>,
+        #[arg(long, value_enum, default_value = "text")]
+        format: Format,
+        /// Compare the printed formulas of this file with the derivation, term by term.
+        #[arg(long, value_name = "FILE", conflicts_with = "operator")]
+        against: Option<PathBuf>,
+    },
+    /// Solve for the base state and print its profiles.
+    #[command(after_help = "Example: landau base my.model --set S=400 --set H=auto --points 21")]
+    Base {
+        /// A built model, or the path of a .model file.
+        model: String,
+        /// Number of heights to print, evenly spaced.
+        #[arg(long, default_value_t = 41)]
+        points: usize,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Direct and adjoint eigenvalues at one wavenumber.
+    #[command(after_help = "Example: landau spectrum my.model --k 0.16 -M 100")]
+    Spectrum {
+        /// A built model, or the path of a .model file.
+        model: String,
+        /// Wavenumber; the model's typical one by default.
+        #[arg(long, allow_negative_numbers = true)]
+        k: Option<f64>,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Landau coefficients, kind of bifurcation, amplitude, error, resonances at one wavenumber.
+    #[command(
+        after_help = "Example: landau point my.model --k 0.16\n         landau point my.model --k 1 --set r=0.1 --json"
+    )]
+    Point {
+        /// A built model, or the path of a .model file.
+        model: String,
+        /// Wavenumber; the model's typical one by default.
+        #[arg(long, allow_negative_numbers = true)]
+        k: Option<f64>,
+        /// Order of the expansion: 3 gives c2.
+        #[arg(long, default_value_t = 3)]
+        order: usize,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Where growth or c2 changes sign, or c2 jumps through infinity.
+    #[command(
+        after_help = "Examples:\n  landau critical my.model --vary k --from 0.1 --to 0.2\n  landau critical my.model --vary k --from 0.06 --to 0.1 --of c2\n  landau critical my.model --vary S --from 50 --to 100 --k 0.16\n  landau critical my.model --vary R --from 5000 --to 6500 --minimize k=0.9:1.1"
+    )]
+    Critical {
+        /// A built model, or the path of a .model file.
+        model: String,
+        #[command(flatten)]
+        options: CriticalOptions,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Landau points over ranges of k and parameters, as CSV; resumes where it was interrupted.
+    #[command(
+        after_help = "Examples:\n  landau sweep my.model --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep my.model --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv"
+    )]
+    Sweep {
+        /// A built model, or the path of a .model file.
+        model: String,
+        #[command(flatten)]
+        options: SweepOptions,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// The fields over the (x, y)-plane, as pictures and as data.
+    #[command(
+        after_help = "Examples:\n  landau pattern my.model --k 0.16 --out pattern.svg --out pattern.npz\n  landau pattern my.model --k 0.16 --amplitude 0.1 --shade T --arrows u,v --out pattern.vtk"
+    )]
+    Pattern {
+        /// A built model, or the path of a .model file.
+        model: String,
+        #[command(flatten)]
+        options: PatternOptions,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Work through a study file: figures, numbers beside the printed ones, a report in HTML.
+    #[command(
+        after_help = "Examples:\n  landau reproduce --out report\n  landau reproduce my/studies/mine.toml --out report\n\nWithout a file, the only one in a folder `studies` here or one level below is taken.\nAn interrupted run goes on with the task where it was."
+    )]
+    Reproduce {
+        /// A study file.
+        study: Option<PathBuf>,
+        /// The folder of the report.
+        #[arg(long, default_value = "report")]
+        out: PathBuf,
+        /// Print one JSON object alone on standard output.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Print the certificate of a model; fails when it does not hold.
+    #[command(after_help = "Example: landau verify my.model --k 0.16")]
+    Verify {
+        /// A built model, or the path of a .model file.
+        model: String,
+        /// Wavenumber; the model's typical one by default.
+        #[arg(long, allow_negative_numbers = true)]
+        k: Option<f64>,
+        #[command(flatten)]
+        common: Common,
+    },
+}
+
+/// Options that every computation takes.
+#[derive(Args)]
+pub struct Common {
+    /// Set a parameter (repeatable): a number, the name of a choice, or `auto`.
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// Chebyshev resolution M.
+    #[arg(short = 'M', default_value_t = 50)]
+    pub resolution: usize,
+    /// Which mode: the one nearest to this eigenvalue; the leading one by default.
+    #[arg(long, value_name = "RE[,IM]", value_parser = complex, allow_hyphen_values = true)]
+    pub near: Option<C64>,
+    /// Print one JSON object alone on standard output.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct CriticalOptions {
+    /// `k` or a parameter.
+    #[arg(long, value_name = "NAME")]
+    pub vary: String,
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    pub from: f64,
+    #[arg(long, value_name = "B", allow_negative_numbers = true)]
+    pub to: f64,
+    /// What changes sign.
+    #[arg(long, value_enum, default_value = "growth")]
+    pub of: Of,
+    /// The fixed wavenumber, when a parameter varies.
+    #[arg(long, allow_negative_numbers = true)]
+    pub k: Option<f64>,
+    /// The extremum over a range of k.
+    #[arg(long, value_name = "k=A:B")]
+    pub minimize: Option<String>,
+}
+
+#[derive(Args)]
+pub struct SweepOptions {
+    /// A range of k or of a parameter (repeatable; the first varies fastest and is followed).
+    #[arg(long, value_name = "NAME=FROM:TO:COUNT", required = true)]
+    pub over: Vec<String>,
+    /// The fixed wavenumber, when no range varies k.
+    #[arg(long, allow_negative_numbers = true)]
+    pub k: Option<f64>,
+    /// Where the table goes.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Overwrite a file that is no table of this sweep.
+    #[arg(long)]
+    pub force: bool,
+    /// A picture of growth rate, c2 and amplitude over the first axis.
+    #[arg(long, value_name = "FILE.svg")]
+    pub plot: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct PatternOptions {
+    /// Wavenumber; the model's typical one by default.
+    #[arg(long, allow_negative_numbers = true)]
+    pub k: Option<f64>,
+    /// A; the equilibrium amplitude by default.
+    #[arg(long, value_name = "A", allow_negative_numbers = true)]
+    pub amplitude: Option<f64>,
+    /// Wavelengths along x.
+    #[arg(long, default_value_t = 2.0)]
+    pub wavelengths: f64,
+    /// Points along x and y.
+    #[arg(long, value_name = "NXxNY", default_value = "161x81")]
+    pub points: String,
+    /// The field that is shaded; the first by default.
+    #[arg(long, value_name = "FIELD")]
+    pub shade: Option<String>,
+    /// The fields that are drawn as arrows; u with v or w by default.
+    #[arg(long, value_name = "FIELD,FIELD")]
+    pub arrows: Option<String>,
+    /// Where it goes (repeatable): .svg is a picture, .npz, .nc and .vtk are data.
+    #[arg(long, value_name = "FILE", required = true)]
+    pub out: Vec<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum OperatorName {
+    Base,
+    #[value(name = "L")]
+    Linear,
+    Adjoint,
+    #[value(name = "N2")]
+    N2,
+    #[value(name = "N3")]
+    N3,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    Text,
+    Latex,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Of {
+    Growth,
+    C2,
+    Resonance,
+}
+
+fn complex(text: &str) -> Result<C64, String> {
+    let number = |part: &str| {
+        part.trim()
+            .parse::<f64>()
+            .ok()
+            .filter(|v| v.is_finite())
+            .ok_or_else(|| format!("`{part}` is not a number; --near accepts RE or RE,IM"))
+    };
+    match text.split_once(',') {
+        Some((re, im)) => Ok(C64::new(number(re)?, number(im)?)),
+        None => Ok(C64::new(number(text)?, 0.0)),
+    }
+}
+
+/// `NAME=A:B` or `NAME=A:B:N`
+pub fn range(option: &str, text: &str, parts: usize) -> Result<(String, Vec<f64>), String> {
+    let expected = if parts == 3 {
+        "NAME=FROM:TO:COUNT"
+    } else {
+        "k=A:B"
+    };
+    let wrong = || format!("{option} {text}: {option} accepts {expected}");
+    let (name, numbers) = text.split_once('=').ok_or_else(wrong)?;
+    let numbers: Vec<f64> = numbers
+        .split(':')
+        .map(|n| n.trim().parse::<f64>())
+        .collect::<Result<_, _>>()
+        .map_err(|_| wrong())?;
+    if numbers.len() != parts || numbers.iter().any(|n| !n.is_finite()) {
+        return Err(wrong());
+    }
+    Ok((name.trim().to_owned(), numbers))
+}

@@ -1,0 +1,239 @@
+//! Commands that compute nothing: models, check, explain.
+
+use crate::arguments::{Format, OperatorName};
+use landau_codegen::Sources;
+use landau_codegen::derive::Derivation;
+use landau_codegen::diagnostic::SourceFile;
+use landau_codegen::emit::text::{self, Section, Typeset};
+use landau_codegen::graph::{Latex, Notation, Plain};
+use landau_codegen::{generate, tape};
+use landau_report::library::Library;
+use landau_report::reproduce::{Errata, Formulas, all_explained};
+use landau_solver::error::{Error, Result};
+use landau_solver::model::{CaseInfo, ClosureKind, Model};
+use landau_solver::study::Setup;
+use serde_json::json;
+use std::path::Path;
+
+pub fn models(models: &[Box<dyn Model>], json: bool) -> Result<()> {
+    if json {
+        let list: Vec<_> = models
+            .iter()
+            .map(|m| {
+                let s = m.structure();
+                json!({"name": s.name, "title": s.title, "operations": s.operations})
+            })
+            .collect();
+        say!("{}", json!(list));
+        return Ok(());
+    }
+    let width = models
+        .iter()
+        .map(|m| m.structure().name.len())
+        .max()
+        .unwrap_or(0);
+    for model in models {
+        say!(
+            "{:width$}  {}",
+            model.structure().name,
+            model.structure().title
+        );
+    }
+    Ok(())
+}
+
+pub fn check(library: &Library, file: &Path) -> Result<()> {
+    let sources = library.sources(file)?;
+    let model = tape(&sources)
+        .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
+    check_closed_base(&model)?;
+    check_claims(&model)?;
+    let structure = model.structure();
+    let fields: Vec<&str> = structure.fields.iter().map(|f| f.name.as_str()).collect();
+    say!(
+        "{}: the model `{}` in {} is well formed",
+        file.display(),
+        structure.name,
+        fields.join(", ")
+    );
+    Ok(())
+}
+
+/// Resolution at which a claim is tried.
+const CLAIM_RESOLUTION: usize = 24;
+
+/// What a spec calls conserved without a proof has to be, at the default parameters; where switches change the
+/// walls it may be conserved for other choices.
+fn check_claims(model: &dyn Model) -> Result<()> {
+    let structure = model.structure();
+    let claims = |case: &CaseInfo| {
+        let kinds = case.closures.iter().map(|c| c.kind);
+        kinds.filter(|kind| *kind == ClosureKind::Claimed).count()
+    };
+    let [case] = structure.cases.as_slice() else {
+        return Ok(());
+    };
+    if claims(case) == 0 {
+        return Ok(());
+    }
+    let setup = Setup::new(model, CLAIM_RESOLUTION);
+    let base = setup.base(None)?;
+    setup.with_problem(&base, |problem| {
+        let kept = problem.borders.iter().filter(|b| b.kind == ClosureKind::Claimed);
+        if kept.count() == claims(case) {
+            return Ok(());
+        }
+        Err(Error::input(
+            "an integral of the block `mean`: this integral is not conserved, for its density must change by a \
+             flux that vanishes at both ends",
+        ))
+    })
+}
+
+/// Relative distances from the defaults at which a base state in closed form is tried.
+const SAMPLES: [f64; 3] = [0.0, 0.0732, -0.0568];
+
+/// A base state in closed form has to solve its balances at any parameters.
+fn check_closed_base(model: &dyn Model) -> Result<()> {
+    let structure = model.structure();
+    if !structure.base.solved.is_empty() {
+        return Ok(());
+    }
+    for sample in SAMPLES {
+        let mut setup = Setup::new(model, 8);
+        let mut shown = Vec::new();
+        for (index, info) in structure.parameters.iter().enumerate() {
+            // Each by its own part, so that nothing cancels.
+            let moved = info.default * (1.0 + sample * (1.0 + 0.37 * index as f64).sin());
+            if info.choices.is_empty() && moved >= info.lower && moved <= info.upper {
+                setup.parameters.values[index] = moved;
+                shown.push(format!("{} = {moved}", info.name));
+            }
+        }
+        let place = match sample {
+            0.0 => "the default parameters".to_owned(),
+            _ => shown.join(", "),
+        };
+        setup
+            .base(None)
+            .map_err(|error| Error::input(format!("at {place}: {error}")))?;
+    }
+    Ok(())
+}
+
+pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format) -> Result<()> {
+    let derivation = derive(model)?;
+    let chosen = operator.map(|name| match name {
+        OperatorName::Base => Section::Base,
+        OperatorName::Linear => Section::Linear,
+        OperatorName::Adjoint => Section::Adjoint,
+        OperatorName::N2 => Section::Nonlinear(2),
+        OperatorName::N3 => Section::Nonlinear(3),
+    });
+    for section in text::sections(&derivation) {
+        if chosen.is_some_and(|c| c != section) {
+            continue;
+        }
+        match format {
+            Format::Text => say!("{}", text::print(&derivation, section)),
+            Format::Latex => {
+                for row in text::latex(&derivation, section) {
+                    let row = match row {
+                        Typeset::Formula(row) => row,
+                        Typeset::Heading(words) | Typeset::Words(words) => {
+                            text::latex_words(&words)
+                        }
+                    };
+                    say!("\\[ {row} \\]");
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The printed formulas of a file beside the derivation.
+///
+/// # Errors
+/// A difference that the file does not explain.
+pub fn explain_against(model: &dyn Model, file: &Path, format: Format) -> Result<()> {
+    let notation: &dyn Notation = match format {
+        Format::Text => &Plain,
+        Format::Latex => &Latex,
+    };
+    let errata = Errata::read(file)?;
+    let judgements = errata.judge(&mut derive(model)?, notation)?;
+    say!("{}", errata.source);
+    for judgement in &judgements {
+        let (terms, wrong) = (judgement.terms, judgement.differences.len());
+        let verdict = match wrong {
+            0 => "agrees".to_owned(),
+            _ => format!("{wrong} of {terms} terms differ"),
+        };
+        say!("{} ({}): {verdict}", judgement.number, judgement.about);
+        for [printed, derived] in &judgement.differences {
+            say!("    printed {printed}, derived {derived}");
+        }
+        for slip in &judgement.slips {
+            let why = match slip.why.as_str() {
+                "" => String::new(),
+                why => format!(": {why}"),
+            };
+            let verdict = slip.verdict.words();
+            say!(
+                "  `{}` for `{}`, {verdict}{why}",
+                slip.printed,
+                slip.derived
+            );
+        }
+        if let Some(open) = &judgement.unexplained {
+            say!("  not explained: {open}");
+        }
+    }
+    let agree = judgements.iter().filter(|j| j.differences.is_empty());
+    say!("{} of {} formulas agree", agree.count(), judgements.len());
+    all_explained(&judgements)
+}
+
+/// The derivation of a model from the sources that it carries.
+fn derive(model: &dyn Model) -> Result<Derivation> {
+    let mut files = model
+        .sources()
+        .into_iter()
+        .map(|(path, text)| SourceFile { path, text });
+    let spec = files
+        .next()
+        .ok_or_else(|| Error::input("the model has no source"))?;
+    let stem = |path: &str| {
+        Path::new(path)
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    };
+    let laws = files.map(|file| (stem(&file.path), file)).collect();
+    let (derivation, _) = generate(&Sources { spec, laws })
+        .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
+    Ok(derivation)
+}
+
+/// All sections of the derived operators in LaTeX, and printed formulas beside them.
+pub fn formulas(model: &dyn Model, errata: Option<&Errata>) -> Result<Formulas> {
+    let mut derivation = derive(model)?;
+    let errata = match errata {
+        Some(errata) => errata.judge(&mut derivation, &Latex)?,
+        None => Vec::new(),
+    };
+    let title = |section: &Section| match section {
+        Section::Base => "Base state".to_owned(),
+        Section::Linear => "Linear operator".to_owned(),
+        Section::Adjoint => "Adjoint operator".to_owned(),
+        Section::Nonlinear(degree) => format!("Nonlinear operator of degree {degree}"),
+    };
+    let sections = text::sections(&derivation).into_iter();
+    let sections = sections.map(|s| (title(&s), text::latex(&derivation, s)));
+    Ok(Formulas {
+        sections: sections.collect(),
+        errata,
+    })
+}

@@ -1,0 +1,131 @@
+//! The command line.
+//!
+//! Exit status 0: an answer. 2: bad input. 3: a computation without an answer.
+
+/// Prints a line; a reader that has gone away is no error.
+macro_rules! say {
+    ($($argument:tt)*) => {{
+        use std::io::Write;
+        let _ = writeln!(std::io::stdout(), $($argument)*);
+    }};
+}
+
+mod arguments;
+mod inspect;
+mod interrupt;
+mod pattern;
+mod picture;
+mod progress;
+mod reproduce;
+mod solve;
+
+use arguments::{Arguments, Command, Common};
+use clap::Parser;
+use landau_report::library::Library;
+use landau_solver::error::{Error, Result};
+use landau_solver::model::Model;
+use landau_solver::study::Setup;
+use std::process::ExitCode;
+
+/// Runs the command line for the models of a crate.
+pub fn run(models: Vec<Box<dyn Model>>) -> ExitCode {
+    // Parallelism is over points; a matrix belongs to one thread.
+    faer::set_global_parallelism(faer::Par::Seq);
+    interrupt::watch();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // --help and --version are answers.
+            let status = if error.use_stderr() { 2 } else { 0 };
+            let _ = error.print();
+            return ExitCode::from(status);
+        }
+    };
+    match dispatch(&Library { models }, arguments.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(error.status())
+        }
+    }
+}
+
+fn dispatch(library: &Library, command: Command) -> Result<()> {
+    match command {
+        Command::Models { json } => inspect::models(&library.models, json),
+        Command::Check { file } => inspect::check(library, &file),
+        Command::Explain {
+            model,
+            operator,
+            format,
+            against,
+        } => library.with_model(&model, |model| match &against {
+            Some(file) => inspect::explain_against(model, file, format),
+            None => inspect::explain(model, operator, format),
+        }),
+        Command::Base {
+            model,
+            points,
+            common,
+        } => with_setup(library, &model, &common, |setup| {
+            solve::base(setup, points, &common)
+        }),
+        Command::Spectrum { model, k, common } => with_setup(library, &model, &common, |setup| {
+            solve::spectrum(setup, k, &common)
+        }),
+        Command::Point {
+            model,
+            k,
+            order,
+            common,
+        } => with_setup(library, &model, &common, |setup| {
+            solve::point(setup, k, order, &common)
+        }),
+        Command::Critical {
+            model,
+            options,
+            common,
+        } => with_setup(library, &model, &common, |setup| {
+            solve::critical(setup, &options, &common)
+        }),
+        Command::Sweep {
+            model,
+            options,
+            common,
+        } => with_setup(library, &model, &common, |setup| {
+            solve::sweep(setup, &options, &common)
+        }),
+        Command::Pattern {
+            model,
+            options,
+            common,
+        } => with_setup(library, &model, &common, |setup| {
+            pattern::pattern(setup, &options, &common)
+        }),
+        Command::Reproduce { study, out, json } => {
+            reproduce::reproduce(library, study.as_deref(), &out, json)
+        }
+        Command::Verify { model, k, common } => with_setup(library, &model, &common, |setup| {
+            solve::verify(setup, k, &common)
+        }),
+    }
+}
+
+fn with_setup<R>(
+    library: &Library,
+    name: &str,
+    common: &Common,
+    action: impl FnOnce(&Setup) -> Result<R>,
+) -> Result<R> {
+    library.with_model(name, |model| {
+        if !(4..=1000).contains(&common.resolution) {
+            return Err(Error::input(format!(
+                "-M {} is out of range: -M accepts 4 to 1000",
+                common.resolution
+            )));
+        }
+        let mut setup = Setup::new(model, common.resolution);
+        setup.set(&common.set)?;
+        action(&setup)
+    })
+}

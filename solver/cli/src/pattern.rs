@@ -1,0 +1,134 @@
+//! The command `pattern`: pictures and data of the fields over the plane.
+
+use crate::arguments::{Common, PatternOptions};
+use crate::solve::asked;
+use landau_report::data::FORMATS;
+use landau_report::data::plane::{attributes, dataset};
+use landau_report::figure::pattern_pair;
+use landau_solver::error::{Error, Result};
+use landau_solver::file::write_whole;
+use landau_solver::study::{Setup, check_wavenumber};
+use landau_solver::weakly::{Pattern, Window, pattern as expand};
+use serde_json::json;
+
+pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Result<()> {
+    let (k, selection) = asked(setup, options.k, common)?;
+    check_wavenumber(k)?;
+    let window = window(options)?;
+    for path in &options.out {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        if extension != "svg" && !FORMATS.contains(&extension) {
+            return Err(Error::input(format!(
+                "--out {}: it accepts .svg, .{}",
+                path.display(),
+                FORMATS.join(", .")
+            )));
+        }
+    }
+    let state = setup.base(None)?;
+    setup.with_point(&state, k, selection, |point| {
+        let amplitude = match (options.amplitude, point.amplitude()) {
+            (Some(given), _) if given.is_finite() => given,
+            (Some(given), _) => {
+                return Err(Error::input(format!(
+                    "--amplitude {given}: it accepts a number"
+                )));
+            }
+            (None, Some(equilibrium)) => equilibrium,
+            (None, None) => {
+                return Err(Error::computation(
+                    "there is no equilibrium amplitude at cubic order (a0 and a2 have one sign); \
+                     give one with --amplitude",
+                ));
+            }
+        };
+        let found = expand(point, amplitude, window)?;
+        let attributes = attributes(setup, &state.parameters, k, amplitude);
+        for path in &options.out {
+            if path.extension().is_some_and(|e| e == "svg") {
+                write_whole(path, picture(setup, options, &found)?.as_bytes())?;
+            } else {
+                dataset(setup, &found, attributes.clone()).write(path)?;
+            }
+        }
+        if common.json {
+            let files: Vec<String> = options
+                .out
+                .iter()
+                .map(|p| p.display().to_string())
+                .collect();
+            say!("{}", json!({"k": k, "amplitude": amplitude, "out": files}));
+        } else {
+            say!(
+                "{} at k = {k}, A = {amplitude:.8}",
+                setup.model.structure().title
+            );
+            for path in &options.out {
+                say!("  {}", path.display());
+            }
+        }
+        Ok(())
+    })
+}
+
+fn window(options: &PatternOptions) -> Result<Window> {
+    let wrong = || {
+        let text = &options.points;
+        Error::input(format!(
+            "--points {text}: it accepts NXxNY, each from 2 to 4000"
+        ))
+    };
+    let (columns, rows) = options.points.split_once('x').ok_or_else(wrong)?;
+    let count = |text: &str| {
+        let number = text.trim().parse().map_err(|_| wrong())?;
+        if (2..=4000).contains(&number) {
+            Ok(number)
+        } else {
+            Err(wrong())
+        }
+    };
+    let wavelengths = options.wavelengths;
+    if !(wavelengths > 0.0 && wavelengths <= 100.0) {
+        return Err(Error::input(format!(
+            "--wavelengths {wavelengths}: it accepts a number up to 100"
+        )));
+    }
+    Ok(Window {
+        columns: count(columns)?,
+        rows: count(rows)?,
+        wavelengths,
+    })
+}
+
+fn picture(setup: &Setup, options: &PatternOptions, found: &Pattern) -> Result<String> {
+    let field = |name: &str| {
+        found.field(name).ok_or_else(|| {
+            let names = found.names.join(", ");
+            Error::input(format!(
+                "there is no field `{name}`: the profiles are {names}"
+            ))
+        })
+    };
+    if found.y.len() < 2 {
+        return Err(Error::input(
+            "a model without a cross-stream coordinate has no plane to draw: write .npz or .nc",
+        ));
+    }
+    let shade = options.shade.as_deref().map_or(Ok(0), field)?;
+    let arrows = match &options.arrows {
+        Some(text) => {
+            let (along, across) = text
+                .split_once(',')
+                .ok_or_else(|| Error::input(format!("--arrows {text}: it accepts FIELD,FIELD")))?;
+            Some([field(along.trim())?, field(across.trim())?])
+        }
+        None => velocity(found),
+    };
+    Ok(pattern_pair(setup.model.structure(), found, shade, arrows))
+}
+
+/// The fields that are a velocity by their customary names.
+fn velocity(found: &Pattern) -> Option<[usize; 2]> {
+    let across = found.field("v").or_else(|| found.field("w"))?;
+    Some([found.field("u")?, across])
+}

@@ -1,0 +1,35 @@
+//! A bar for long work, on standard error.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use landau_solver::study::Progress;
+
+/// How far the work is.
+pub struct Bar(ProgressBar);
+
+impl Bar {
+    pub fn new(what: &str) -> Self {
+        let bar = ProgressBar::new(0);
+        let style = ProgressStyle::with_template("{prefix} [{bar:40}] {pos}/{len} {eta}");
+        bar.set_style(
+            style
+                .unwrap_or_else(|_| ProgressStyle::default_bar())
+                .progress_chars("=> "),
+        );
+        bar.set_prefix(what.to_owned());
+        Bar(bar)
+    }
+}
+
+impl Progress for Bar {
+    fn begin(&self, steps: usize) {
+        self.0.set_length(steps as u64);
+    }
+
+    fn advance(&self, steps: usize) {
+        self.0.inc(steps as u64);
+    }
+
+    fn end(&self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,100 @@
+//! The command `reproduce`: a study file worked through.
+
+use crate::inspect;
+use crate::progress::Bar;
+use landau_report::library::Library;
+use landau_report::reproduce::{Errata, Study, Workshop};
+use landau_solver::error::{Error, Result};
+use serde_json::json;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool) -> Result<()> {
+    let path = match study {
+        Some(path) => path.to_owned(),
+        None => only_study()?,
+    };
+    let study = Study::read(&path)?;
+    let home = path.parent().unwrap_or(Path::new(".")).to_owned();
+    let errata = study
+        .errata
+        .as_ref()
+        .map(|file| Errata::read(&home.join(file)));
+    let errata = errata.transpose()?;
+    let formulas = library.with_model(&study.model, |model| {
+        inspect::formulas(model, errata.as_ref())
+    })?;
+    let shop = Workshop {
+        library,
+        study: &study,
+        home,
+        out: out.to_owned(),
+    };
+    let numbers = shop.run(&formulas, &Bar::new("reproducing"))?;
+    let page = out.join("index.html");
+    if json {
+        let object = json!({
+            "study": path.display().to_string(),
+            "report": page.display().to_string(),
+            "figures": study.figure.len(),
+            "numbers": numbers.len(),
+        });
+        say!("{object}");
+        return Ok(());
+    }
+    say!(
+        "{:<8} {:<52} {:>14} {:>12}",
+        "figure",
+        "quantity",
+        "ours",
+        "printed"
+    );
+    for number in numbers.iter().filter(|n| n.printed.is_some()) {
+        let shown = |v: Option<f64>| v.map_or("-".to_owned(), |v| format!("{v:.6}"));
+        say!(
+            "{:<8} {:<52} {:>14} {:>12}",
+            number.figure,
+            number.quantity,
+            shown(number.ours),
+            shown(number.printed)
+        );
+    }
+    say!(
+        "{} figures, {} numbers: {}",
+        study.figure.len(),
+        numbers.len(),
+        page.display()
+    );
+    Ok(())
+}
+
+/// The study that stands in a folder `studies` here or one level below.
+fn only_study() -> Result<PathBuf> {
+    let entries = |folder: &Path| -> Vec<PathBuf> {
+        let read = fs::read_dir(folder).into_iter().flatten();
+        let mut paths: Vec<PathBuf> = read.filter_map(|e| e.ok().map(|e| e.path())).collect();
+        paths.sort();
+        paths
+    };
+    let mut folders = vec![PathBuf::from("studies")];
+    folders.extend(
+        entries(Path::new("."))
+            .into_iter()
+            .map(|p| p.join("studies")),
+    );
+    let mut found: Vec<PathBuf> = folders.iter().flat_map(|folder| entries(folder)).collect();
+    found.retain(|path| path.extension().is_some_and(|e| e == "toml"));
+    match found.len() {
+        1 => Ok(found.swap_remove(0)),
+        0 => Err(Error::input(
+            "no study file was found in a folder `studies` here: name one",
+        )),
+        _ => {
+            let names: Vec<String> = found.iter().map(|p| p.display().to_string()).collect();
+            Err(Error::input(format!(
+                "name one of the study files {}",
+                names.join(", ")
+            )))
+        }
+    }
+}

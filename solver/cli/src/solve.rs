@@ -1,0 +1,348 @@
+//! Commands that compute.
+
+use crate::arguments::{Common, CriticalOptions, Of, SweepOptions, range};
+use crate::progress::Bar;
+use crate::{interrupt, picture};
+use landau_solver::error::{Error, Result};
+use landau_solver::file::{destination, write_whole};
+use landau_solver::model::C64;
+use landau_solver::study::critical::{Quantity, Question};
+use landau_solver::study::minimise::minimise;
+use landau_solver::study::point::PointReport;
+use landau_solver::study::spectrum::SpectrumReport;
+use landau_solver::study::sweep::{Range, Resumed, Sweep};
+use landau_solver::study::verify::Certificate;
+use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality};
+use landau_solver::weakly::Selection;
+use landau_solver::words;
+use serde_json::{Map, json};
+
+/// The wavenumber and the mode that are asked for, or those that the model calls typical.
+///
+/// # Errors
+/// No wavenumber from either.
+pub fn asked(setup: &Setup, k: Option<f64>, common: &Common) -> Result<(f64, Selection<'static>)> {
+    let structure = setup.model.structure();
+    let typical = structure.typical.as_ref();
+    let own = |near: &[f64]| match near {
+        [re, im] => Some(C64::new(*re, *im)),
+        _ => None,
+    };
+    let (k, near) = match (k, typical) {
+        (Some(k), _) => (k, common.near),
+        (None, Some(typical)) => (typical.k, common.near.or(own(&typical.near))),
+        (None, None) => {
+            return Err(Error::input(format!(
+                "give the wavenumber with --k: the model `{}` names no typical one",
+                structure.name
+            )));
+        }
+    };
+    Ok((k, near.map_or(Selection::Leading, Selection::Near)))
+}
+
+pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
+    if !(2..=100_000).contains(&points) {
+        return Err(Error::input(format!(
+            "--points {points} is out of range: it accepts 2 to 100000"
+        )));
+    }
+    let state = setup.base(None)?;
+    let structure = setup.model.structure();
+    let coordinate = structure.coordinate.clone().unwrap_or_else(|| "y".into());
+    let count = if structure.coordinate.is_some() {
+        points
+    } else {
+        1
+    };
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); structure.fields.len() + 1];
+    for i in 0..count {
+        let xi = if count == 1 {
+            0.0
+        } else {
+            -1.0 + 2.0 * i as f64 / (count - 1) as f64
+        };
+        let point = state.point(setup.model, xi, 0.0);
+        columns[0].push(point[0]);
+        for field in 0..structure.fields.len() {
+            columns[field + 1].push(point[structure.base_position(field, 0)]);
+        }
+    }
+    if common.json {
+        let mut profiles = Map::new();
+        for (field, info) in structure.fields.iter().enumerate() {
+            profiles.insert(
+                info.name.clone(),
+                columns[field + 1]
+                    .iter()
+                    .map(|&v| words::number(v))
+                    .collect(),
+            );
+        }
+        let object = json!({
+            "model": structure.name,
+            "parameters": words::parameters(setup, &state.parameters),
+            "degree": state.degree,
+            "tail": words::number(state.tail()),
+            "residual": words::number(state.residual),
+            (coordinate): columns[0],
+            "profiles": profiles,
+        });
+        say!("{object}");
+        return Ok(());
+    }
+    say!(
+        "{} — base state, {} Chebyshev polynomials, tail {:.1e}",
+        structure.title,
+        state.degree + 1,
+        state.tail()
+    );
+    let names = structure.fields.iter().map(|f| f.name.as_str());
+    let header: Vec<String> = std::iter::once(coordinate.as_str())
+        .chain(names)
+        .map(|n| format!("{n:>16}"))
+        .collect();
+    say!("{}", header.join(""));
+    for i in 0..count {
+        let row: Vec<String> = columns.iter().map(|c| format!("{:>16.9}", c[i])).collect();
+        say!("{}", row.join(""));
+    }
+    Ok(())
+}
+
+pub fn spectrum(setup: &Setup, k: Option<f64>, common: &Common) -> Result<()> {
+    let (k, _) = asked(setup, k, common)?;
+    let found = SpectrumReport::compute(setup, k)?;
+    if common.json {
+        say!("{}", found.json());
+    } else {
+        say!("{found}");
+    }
+    Ok(())
+}
+
+pub fn point(setup: &Setup, k: Option<f64>, order: usize, common: &Common) -> Result<()> {
+    if order != 3 {
+        return Err(Error::input(format!(
+            "--order {order} is not available: it accepts 3"
+        )));
+    }
+    let (k, selection) = asked(setup, k, common)?;
+    let found = PointReport::compute(setup, k, selection)?;
+    if common.json {
+        say!("{}", found.json());
+    } else {
+        say!("{found}");
+    }
+    Ok(())
+}
+
+pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Result<()> {
+    let axis = Axis::named(setup.model, &options.vary)?;
+    if !(options.from.is_finite() && options.to.is_finite()) || options.from == options.to {
+        return Err(Error::input("--from and --to accept two different numbers"));
+    }
+    for value in [options.from, options.to] {
+        if axis == Axis::Wavenumber {
+            check_wavenumber(value)?;
+        }
+        setup.moved(axis, value)?;
+    }
+    let range_of_k = match &options.minimize {
+        Some(text) => {
+            let (name, bounds) = range("--minimize", text, 2).map_err(Error::Input)?;
+            if name != "k" || axis == Axis::Wavenumber || bounds[0] >= bounds[1] {
+                return Err(Error::input(format!(
+                    "--minimize {text}: it accepts k=A:B with A < B, for a parameter that varies"
+                )));
+            }
+            check_wavenumber(bounds[0])?;
+            Some((bounds[0], bounds[1]))
+        }
+        None => None,
+    };
+    if axis != Axis::Wavenumber && options.k.is_none() && range_of_k.is_none() {
+        return Err(Error::input(format!(
+            "--vary {}: give the wavenumber with --k, or a range with --minimize k=A:B",
+            options.vary
+        )));
+    }
+    if range_of_k.is_some() && options.of != Of::Growth {
+        return Err(Error::input("--minimize goes with --of growth"));
+    }
+    if let Some(k) = options.k {
+        check_wavenumber(k)?;
+    }
+    let (quantity, name) = match options.of {
+        Of::Growth => (Quantity::Growth, "growth"),
+        Of::C2 => (Quantity::C2, "c2"),
+        Of::Resonance => (Quantity::Resonance, "resonance"),
+    };
+    let (from, to, k) = (options.from, options.to, options.k.unwrap_or(0.0));
+    let question = Question {
+        axis,
+        from,
+        to,
+        quantity,
+        k,
+        near: common.near,
+    };
+    let bar = Bar::new("scanning");
+    let found = match range_of_k {
+        Some(bounds) => vec![minimise(setup, question, bounds, &bar)?],
+        None => criticality::critical(setup, question, &bar)?,
+    };
+    let first = &found[0];
+    if found.len() > 1 {
+        let others: Vec<String> = found[1..]
+            .iter()
+            .map(|c| format!("{:.8}", c.value))
+            .collect();
+        eprintln!(
+            "note: further points in the interval: {}",
+            others.join(", ")
+        );
+    }
+    if common.json {
+        say!(
+            "{}",
+            json!({
+                "parameter": options.vary,
+                "of": name,
+                "value": words::number(first.value),
+                "error": words::number(first.error),
+                "k": words::number(first.k),
+                "c0": words::complex(first.c0),
+            })
+        );
+    } else {
+        say!(
+            "{} = {} (of {name}) at k = {:.10}, c0 = {}",
+            options.vary,
+            words::with_error(first.value, first.error),
+            first.k,
+            words::shown(first.c0)
+        );
+    }
+    Ok(())
+}
+
+pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<()> {
+    let mut ranges: Vec<Range> = Vec::new();
+    for text in &options.over {
+        let (name, numbers) = range("--over", text, 3).map_err(Error::Input)?;
+        let count = numbers[2];
+        if count < 1.0 || count.fract() != 0.0 || count > 1e6 {
+            return Err(Error::input(format!(
+                "--over {text}: COUNT is a whole number from 1 to 1000000"
+            )));
+        }
+        let axis = Axis::named(setup.model, &name)?;
+        if ranges.iter().any(|r| r.axis == axis) {
+            return Err(Error::input(format!(
+                "--over {text}: `{name}` varies already"
+            )));
+        }
+        let count = count as usize;
+        let step = if count > 1 {
+            (numbers[1] - numbers[0]) / (count - 1) as f64
+        } else {
+            0.0
+        };
+        let values: Vec<f64> = (0..count)
+            .map(|i| {
+                if i > 0 && i + 1 == count {
+                    numbers[1]
+                } else {
+                    numbers[0] + step * i as f64
+                }
+            })
+            .collect();
+        for &value in [values.first(), values.last()].into_iter().flatten() {
+            if axis == Axis::Wavenumber {
+                check_wavenumber(value)?;
+            }
+            setup.moved(axis, value)?;
+        }
+        ranges.push(Range { name, axis, values });
+    }
+    if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
+        check_wavenumber(
+            options
+                .k
+                .ok_or_else(|| Error::input("no range varies k: give it with --k"))?,
+        )?;
+    }
+    let sweep = Sweep {
+        setup,
+        ranges,
+        near: common.near,
+        k: options.k,
+    };
+    if let Some(plot) = &options.plot {
+        destination(plot)?;
+    }
+    if !options.force {
+        sweep.check_output(&options.out)?;
+    }
+    interrupt::keeping(&options.out);
+    let rows = sweep.run_to(&options.out, &Bar::new("sweeping"), resumed)?;
+    interrupt::finished();
+    if let Some(path) = &options.plot
+        && let Some(drawn) = picture::sweep(setup, &sweep, &rows)
+    {
+        write_whole(path, drawn.as_bytes())?;
+    }
+    let good = rows.iter().filter(|r| r.status == "ok").count();
+    let unstable = rows
+        .iter()
+        .filter(|r| r.c0.is_some_and(|c| c[0] > 0.0))
+        .count();
+    if common.json {
+        say!(
+            "{}",
+            json!({"out": options.out.display().to_string(), "rows": rows.len(), "ok": good, "unstable": unstable})
+        );
+    } else {
+        picture::table(&sweep, &rows);
+        say!(
+            "{} rows, {good} with a number, {unstable} unstable: {}",
+            rows.len(),
+            options.out.display()
+        );
+    }
+    if good == 0 {
+        return Err(Error::computation(format!(
+            "no point of the sweep has a number: {}",
+            rows[0].status
+        )));
+    }
+    Ok(())
+}
+
+/// Says what an earlier run has left.
+fn resumed(found: Resumed) {
+    if found.taken > 0 {
+        eprintln!(
+            "resumed: {} rows are taken from an interrupted run",
+            found.taken
+        );
+    }
+    if found.damaged > 0 {
+        eprintln!(
+            "note: {} lines of its journal do not fit and are computed again",
+            found.damaged
+        );
+    }
+}
+
+pub fn verify(setup: &Setup, k: Option<f64>, common: &Common) -> Result<()> {
+    let (k, selection) = asked(setup, k, common)?;
+    let certificate = Certificate::compute(setup, k, selection)?;
+    if common.json {
+        say!("{}", certificate.json());
+    } else {
+        say!("{certificate}");
+    }
+    certificate.judge()
+}

@@ -1,0 +1,53 @@
+//! Arrays with their axes and what they were computed from, for other programs.
+
+mod netcdf;
+mod npz;
+pub mod plane;
+mod vtk;
+
+use landau_solver::error::{Error, Result};
+use landau_solver::file::write_whole;
+use std::path::Path;
+
+/// A labelled array over some of the axes, the last varying fastest.
+pub struct Array {
+    pub name: String,
+    pub axes: Vec<usize>,
+    pub values: Vec<f64>,
+}
+
+/// Axes, arrays over them, and attributes.
+pub struct Dataset {
+    pub attributes: Vec<(String, String)>,
+    pub axes: Vec<(String, Vec<f64>)>,
+    pub arrays: Vec<Array>,
+}
+
+/// File formats by extension.
+pub const FORMATS: [&str; 3] = ["npz", "nc", "vtk"];
+
+impl Dataset {
+    /// Writes the file whole or not at all, in the format of its extension.
+    ///
+    /// # Errors
+    /// An extension that is none of [`FORMATS`], a folder that does not exist.
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+        let bytes = match extension {
+            "npz" => npz::encode(self),
+            "nc" => netcdf::encode(self),
+            "vtk" => vtk::encode(self),
+            _ => {
+                return Err(Error::input(format!(
+                    "{}: data is written as .{}",
+                    path.display(),
+                    FORMATS.join(", .")
+                )));
+            }
+        };
+        let bytes = bytes.map_err(|reason| {
+            Error::computation(format!("{} cannot be encoded: {reason}", path.display()))
+        })?;
+        write_whole(path, &bytes)
+    }
+}

@@ -1,0 +1,116 @@
+//! A study file worked through: figures, numbers beside the printed ones, a report.
+//!
+//! `study` (the file) → `task` (what is computed) → `outcome` (pictures, tables, numbers) →
+//! `report` (HTML, JSON). A task that is finished is kept beside the report, so that an
+//! interrupted run goes on where it was.
+
+mod errata;
+mod outcome;
+mod report;
+mod study;
+mod task;
+
+pub use errata::{Errata, Judgement, all_explained};
+pub use outcome::{Number, Outcome, Picture, Table};
+pub use report::Formulas;
+pub use study::Study;
+
+use crate::library::Library;
+use landau_solver::error::{Error, Result};
+use landau_solver::file::write_whole;
+use landau_solver::study::Progress;
+use landau_solver::study::Setup;
+use std::fs;
+use std::path::{Path, PathBuf};
+use study::{Case, Task};
+
+/// Where a study is worked on.
+pub struct Workshop<'a> {
+    pub library: &'a Library,
+    pub study: &'a Study,
+    /// Folder of the study file: models by path stand relative to it.
+    pub home: PathBuf,
+    pub out: PathBuf,
+}
+
+impl Workshop<'_> {
+    /// Works through the study and writes the report.
+    ///
+    /// # Errors
+    /// A folder that cannot be written, a model that does not exist. What merely does not come out is
+    /// a sentence in the report.
+    pub fn run(&self, formulas: &Formulas, progress: &dyn Progress) -> Result<Vec<Number>> {
+        let kept = self.out.join("kept");
+        fs::create_dir_all(&kept)
+            .map_err(|e| Error::input(format!("{} cannot be made: {e}", kept.display())))?;
+        let tasks = self.study.figure.iter().map(|figure| figure.task.len());
+        progress.begin(tasks.sum());
+        let mut outcomes = Vec::new();
+        for figure in &self.study.figure {
+            let mut outcome = Outcome::default();
+            for (index, task) in figure.task.iter().enumerate() {
+                let stem = format!("{}-{}", figure.id, index + 1);
+                let path = kept.join(format!("{stem}.json"));
+                outcome.add(self.task(&figure.id, &stem, task, &path)?);
+                progress.advance(1);
+            }
+            outcomes.push(outcome);
+        }
+        progress.end();
+        let numbers: Vec<Number> = outcomes.iter().flat_map(|o| o.numbers.clone()).collect();
+        report::write(self, formulas, &outcomes)?;
+        let json = serde_json::to_string_pretty(&numbers)
+            .map_err(|e| Error::computation(e.to_string()))?;
+        write_whole(&self.out.join("numbers.json"), (json + "\n").as_bytes())?;
+        Ok(numbers)
+    }
+
+    /// One task, from an earlier run where that has finished it.
+    fn task(&self, figure: &str, stem: &str, task: &Task, path: &Path) -> Result<Outcome> {
+        let key = self.key(stem, task)?;
+        if let Ok(text) = fs::read_to_string(path)
+            && let Ok((known, outcome)) = serde_json::from_str::<(String, Outcome)>(&text)
+            && known == key
+            && outcome.files().all(|file| self.out.join(file).is_file())
+        {
+            return Ok(outcome);
+        }
+        let outcome = task::run(self, figure, stem, task)?;
+        let text = serde_json::to_string(&(key, &outcome))
+            .map_err(|e| Error::computation(e.to_string()))?;
+        write_whole(path, text.as_bytes())?;
+        Ok(outcome)
+    }
+
+    /// What a kept task must have been made from.
+    fn key(&self, stem: &str, task: &Task) -> Result<String> {
+        let spec = serde_json::to_string(task).map_err(|e| Error::computation(e.to_string()))?;
+        let mut hashes = Vec::new();
+        for case in task::cases(task) {
+            hashes.push(self.with_setup(case, |setup| Ok(setup.hash()))?);
+        }
+        hashes.dedup();
+        let version = env!("CARGO_PKG_VERSION");
+        Ok(format!(
+            "{stem} {spec} {} {} {version}",
+            hashes.join(" "),
+            self.study.resolution
+        ))
+    }
+
+    /// Calls `action` with the model and parameters of a case.
+    fn with_setup<R>(&self, case: &Case, action: impl FnOnce(&Setup) -> Result<R>) -> Result<R> {
+        let name = case.model.as_ref().unwrap_or(&self.study.model);
+        let beside = self.home.join(name);
+        let name = match beside.to_str() {
+            Some(path) if beside.is_file() => path,
+            _ => name,
+        };
+        self.library.with_model(name, |model| {
+            let resolution = case.resolution.unwrap_or(self.study.resolution);
+            let mut setup = Setup::new(model, resolution);
+            setup.set(&case.set)?;
+            action(&setup)
+        })
+    }
+}

@@ -1,0 +1,202 @@
+//! Landau coefficients along an axis, the 2:1 resonance, power laws at a bifurcation.
+
+use super::super::Workshop;
+use super::super::outcome::{Number, Outcome, Picture, Table};
+use super::super::study::{Asked, Axis, Case};
+use super::each;
+use super::points::question;
+use crate::figure::{Panel, Style, panels};
+use landau_solver::error::{Error, Result};
+use landau_solver::study::critical;
+use landau_solver::study::sweep::{Column, Range, Row, Sweep, column};
+use landau_solver::study::{self, Setup, Silent};
+
+/// Landau points of one case over an axis.
+fn rows(setup: &Setup, k: Option<f64>, name: &str, values: Vec<f64>) -> Result<Vec<Row>> {
+    let axis = study::Axis::named(setup.model, name)?;
+    let range = Range {
+        name: name.to_owned(),
+        axis,
+        values,
+    };
+    let sweep = Sweep {
+        setup,
+        ranges: vec![range],
+        near: None,
+        k,
+    };
+    Ok(sweep.run(&Silent))
+}
+
+pub(super) fn sweep(
+    shop: &Workshop,
+    cases: &[Case],
+    over: &Axis,
+    columns: &[Column],
+) -> Result<Outcome> {
+    let mut outcome = Outcome::default();
+    let found = each(cases, &mut outcome.failures, |case| {
+        shop.with_setup(case, |setup| rows(setup, case.k, &over.name, over.values()))
+    })?;
+    let names = |column: &Column| match column {
+        Column::A0 => ("growth rate", "a0"),
+        Column::A2 => ("first Landau coefficient", "a2"),
+        Column::Amplitude => ("equilibrium amplitude", "A_e"),
+    };
+    let mut drawn: Vec<Panel> = columns
+        .iter()
+        .map(|column| Panel::new(names(column).0, &over.name, names(column).1))
+        .collect();
+    let mut table = Table::new(&["case", &over.name, "a0", "b0", "a2", "b2", "A_e"]);
+    for (index, rows) in &found {
+        for (panel, quantity) in drawn.iter_mut().zip(columns) {
+            let label = &cases[*index].label;
+            let points = column(rows, *quantity);
+            match quantity {
+                Column::A0 => panel.curve(label, Style::Line, points),
+                Column::A2 | Column::Amplitude => {
+                    panel.curve_with_poles(label, Style::Line, points);
+                }
+            }
+        }
+        for row in rows {
+            let pair = |c: Option<[f64; 2]>| c.unwrap_or([f64::NAN; 2]);
+            let ([a0, b0], [a2, b2]) = (pair(row.c0), pair(row.c2));
+            let amplitude = row.amplitude.unwrap_or(f64::NAN);
+            let place = row.coordinates[0];
+            table
+                .rows
+                .push(vec![(*index + 1) as f64, place, a0, b0, a2, b2, amplitude]);
+        }
+    }
+    picture(&mut outcome, "", &drawn, table);
+    Ok(outcome)
+}
+
+pub(super) fn resonance(shop: &Workshop, cases: &[Case], over: &Axis) -> Result<Outcome> {
+    let mut outcome = Outcome::default();
+    let found = each(cases, &mut outcome.failures, |case| {
+        shop.with_setup(case, |setup| {
+            let values = over.values();
+            let doubled = values.iter().map(|k| 2.0 * k).collect();
+            let one = rows(setup, None, "k", values)?;
+            Ok((one, rows(setup, None, "k", doubled)?))
+        })
+    })?;
+    let mut panel = Panel::new("2:1 resonance", "k", "growth rate");
+    let mut table = Table::new(&["case", "k", "a0(k)", "a0(2k)/2"]);
+    for (index, (one, two)) in &found {
+        let label = &cases[*index].label;
+        let value = |row: &Row| row.c0.map_or(f64::NAN, |c| c[0]);
+        let first = one.iter().map(|r| (r.coordinates[0], value(r)));
+        let second = one.iter().zip(two);
+        let second = second.map(|(r, d)| (r.coordinates[0], 0.5 * value(d)));
+        let (first, second): (Vec<_>, Vec<_>) = (first.collect(), second.collect());
+        for (a, b) in first.iter().zip(&second) {
+            table.rows.push(vec![(*index + 1) as f64, a.0, a.1, b.1]);
+        }
+        panel.curve(&format!("{label} a0(k)"), Style::Line, first);
+        panel.curve(&format!("{label} a0(2k)/2"), Style::Dashed, second);
+    }
+    picture(&mut outcome, "", &[panel], table);
+    Ok(outcome)
+}
+
+/// A_e at given relative distances from a critical point, and the slope of log A_e.
+pub(super) fn power_law(
+    shop: &Workshop,
+    figure: &str,
+    cases: &[Case],
+    asked: &Asked,
+    distances: [f64; 2],
+    count: usize,
+) -> Result<Outcome> {
+    let mut outcome = Outcome::default();
+    let found = each(cases, &mut outcome.failures, |case| {
+        shop.with_setup(case, |setup| {
+            let question = question(setup, case, asked)?;
+            let critical = critical::critical(setup, question, &Silent)?;
+            let place = critical[0].value;
+            let [near, far] = distances.map(f64::abs);
+            let steps = (count.max(3) - 1) as f64;
+            let relative: Vec<f64> = (0..count.max(3))
+                .map(|i| distances[0].signum() * near * (far / near).powf(i as f64 / steps))
+                .collect();
+            let values = relative.iter().map(|d| place * (1.0 + d)).collect();
+            let rows = rows(setup, case.k, &asked.vary, values)?;
+            let points: Vec<(f64, f64)> = relative
+                .iter()
+                .zip(&rows)
+                .filter_map(|(d, row)| Some((d.abs(), row.amplitude?)))
+                .collect();
+            if points.len() < 3 {
+                return Err(Error::computation("too few equilibria for a fit"));
+            }
+            Ok((place, points))
+        })
+    })?;
+    let mut panel = Panel::new(
+        "distance from the bifurcation",
+        &format!("|{0} − {0}_c|/{0}_c", asked.vary),
+        "A_e",
+    );
+    panel.logarithmic = [true, true];
+    let mut table = Table::new(&["case", "distance", "A_e"]);
+    for (index, (place, points)) in found {
+        let case = &cases[index];
+        let slope = slope(&points);
+        for &(distance, amplitude) in &points {
+            table
+                .rows
+                .push(vec![(index + 1) as f64, distance, amplitude]);
+        }
+        let label = format!("{} slope {slope:.4}", case.label);
+        // The law itself, through the nearest point.
+        let (d, a) = points[0];
+        let law = points.iter().map(|p| (p.0, a * (p.0 / d).sqrt())).collect();
+        panel.curve(&label, Style::Dots, points);
+        panel.curve("slope 1/2", Style::Dashed, law);
+        for (quantity, ours) in [(asked.name.as_str(), place), ("exponent", slope)] {
+            outcome.numbers.push(Number {
+                figure: figure.to_owned(),
+                quantity: named(case, quantity),
+                ours: Some(ours),
+                printed: case.printed.get(quantity).copied(),
+                note: case.note.clone(),
+            });
+        }
+    }
+    picture(&mut outcome, "", &[panel], table);
+    Ok(outcome)
+}
+
+/// Least squares in logarithms.
+fn slope(points: &[(f64, f64)]) -> f64 {
+    let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
+    let count = logs.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| logs.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let above: f64 = logs.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
+    above / logs.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
+}
+
+/// `label: quantity`
+pub(super) fn named(case: &Case, quantity: &str) -> String {
+    if case.label.is_empty() {
+        quantity.to_owned()
+    } else {
+        format!("{}: {quantity}", case.label)
+    }
+}
+
+/// Adds the panels with their table, where there is anything to draw.
+pub(super) fn picture(outcome: &mut Outcome, caption: &str, drawn: &[Panel], table: Table) {
+    if let Some(svg) = panels(caption, drawn) {
+        outcome.pictures.push(Picture {
+            caption: caption.to_owned(),
+            svg,
+            table: Some(table),
+            files: Vec::new(),
+        });
+    }
+}

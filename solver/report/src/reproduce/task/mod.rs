@@ -1,0 +1,123 @@
+//! What a study can ask for, one module a sort of answer.
+
+mod curves;
+mod planes;
+mod points;
+mod profiles;
+
+use super::Workshop;
+use super::outcome::Outcome;
+use super::study::{Case, Task};
+use landau_solver::error::{Error, Result};
+use rayon::prelude::*;
+
+/// Computes one task of a figure; files that it writes itself begin with `stem`.
+pub(super) fn run(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outcome> {
+    match task {
+        Task::Profiles {
+            case,
+            fields,
+            logarithmic,
+            tail,
+            scale_height,
+        } => profiles::profiles(
+            shop,
+            figure,
+            case,
+            fields,
+            *logarithmic,
+            tail.zip(scale_height.as_ref()),
+        ),
+        Task::Spectrum {
+            case,
+            over,
+            resolutions,
+        } => profiles::spectrum(shop, figure, case, over, resolutions),
+        Task::Sweep {
+            case,
+            over,
+            columns,
+        } => curves::sweep(shop, case, over, columns),
+        Task::Resonance { case, over } => curves::resonance(shop, case, over),
+        Task::Critical {
+            case,
+            asked,
+            against,
+        } => points::critical(shop, figure, case, asked, against.as_ref()),
+        Task::Values { case } => points::values(shop, figure, case),
+        Task::PowerLaw {
+            case,
+            critical,
+            distances,
+            count,
+        } => curves::power_law(shop, figure, case, critical, *distances, *count),
+        Task::Pattern {
+            case,
+            shade,
+            arrows,
+            wavelengths,
+        } => {
+            let wanted = planes::Wanted {
+                figure,
+                stem,
+                shade,
+                arrows: arrows.as_ref(),
+                wavelengths: *wavelengths,
+            };
+            planes::pattern(shop, case, &wanted)
+        }
+        Task::Circulation {
+            case,
+            over,
+            k,
+            arrows,
+            side,
+            shade,
+        } => planes::circulation(shop, figure, case, over, *k, arrows, *side, shade),
+    }
+}
+
+/// The cases of a task.
+pub(super) fn cases(task: &Task) -> &[Case] {
+    match task {
+        Task::Profiles { case, .. }
+        | Task::Spectrum { case, .. }
+        | Task::Sweep { case, .. }
+        | Task::Resonance { case, .. }
+        | Task::Critical { case, .. }
+        | Task::Values { case }
+        | Task::PowerLaw { case, .. }
+        | Task::Pattern { case, .. }
+        | Task::Circulation { case, .. } => case,
+    }
+}
+
+/// What a failure is named after.
+trait Named {
+    fn label(&self) -> &str;
+}
+
+impl Named for Case {
+    fn label(&self) -> &str {
+        &self.label
+    }
+}
+
+/// Every item by itself, in parallel; what fails becomes a sentence.
+fn each<I: Named + Sync, R: Send>(
+    items: &[I],
+    failures: &mut Vec<String>,
+    work: impl Fn(&I) -> Result<R> + Sync + Send,
+) -> Result<Vec<(usize, R)>> {
+    let results: Vec<Result<R>> = items.par_iter().map(&work).collect();
+    let mut found = Vec::new();
+    for (index, result) in results.into_iter().enumerate() {
+        match result {
+            Ok(value) => found.push((index, value)),
+            // A study file that asks for what does not exist is wrong as a whole.
+            Err(Error::Input(message)) => return Err(Error::Input(message)),
+            Err(error) => failures.push(format!("{}: {error}", items[index].label())),
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,173 @@
+//! Base states over the cross-stream coordinate, and spectra over the wavenumber.
+
+use super::super::Workshop;
+use super::super::outcome::{Number, Outcome, Table};
+use super::super::study::{Axis, Case};
+use super::curves::{named, picture};
+use super::each;
+use crate::figure::{Panel, Style};
+use landau_solver::error::{Error, Result};
+use landau_solver::parameters::Parameters;
+use landau_solver::spectrum;
+use landau_solver::study::Setup;
+use landau_solver::study::quadrature::adjoint_mode;
+
+/// Points of a profile.
+const POINTS: usize = 401;
+
+/// What a profile is fitted with: a stretch of the interval, a field and a parameter for the model's
+/// own scale height.
+type Tail<'a> = ([f64; 2], &'a [String; 2]);
+
+fn field(setup: &Setup, name: &str) -> Result<usize> {
+    let structure = setup.model.structure();
+    let position = structure.fields.iter().position(|f| f.name == name);
+    position.ok_or_else(|| Error::input(format!("the model has no field `{name}`")))
+}
+
+pub(super) fn profiles(
+    shop: &Workshop,
+    figure: &str,
+    cases: &[Case],
+    fields: &[String],
+    logarithmic: bool,
+    tail: Option<Tail>,
+) -> Result<Outcome> {
+    let mut outcome = Outcome::default();
+    let found = each(cases, &mut outcome.failures, |case| {
+        shop.with_setup(case, |setup| {
+            let structure = setup.model.structure();
+            let base = setup.base(None)?;
+            let mut columns = vec![Vec::new(); fields.len() + 1];
+            for i in 0..POINTS {
+                let xi = -1.0 + 2.0 * i as f64 / (POINTS - 1) as f64;
+                let point = base.point(setup.model, xi, 0.0);
+                columns[0].push(base.y(xi));
+                for (column, name) in columns[1..].iter_mut().zip(fields) {
+                    column.push(point[structure.base_position(field(setup, name)?, 0)]);
+                }
+            }
+            let heights = tail.map(|tail| scale_heights(setup, &base, &columns, tail));
+            Ok((columns, heights.transpose()?))
+        })
+    })?;
+    let vertical = shop.with_setup(&cases[0], |setup| {
+        Ok(setup.model.structure().coordinate.clone())
+    })?;
+    let vertical = vertical.unwrap_or_default();
+    let mut drawn: Vec<Panel> = fields
+        .iter()
+        .map(|name| {
+            let mut panel = Panel::new(&format!("base state: {name}"), &vertical, name);
+            panel.logarithmic[1] = logarithmic;
+            panel
+        })
+        .collect();
+    let mut header = vec!["case", vertical.as_str()];
+    header.extend(fields.iter().map(String::as_str));
+    let mut table = Table::new(&header);
+    for (index, (columns, heights)) in found {
+        for (panel, values) in drawn.iter_mut().zip(&columns[1..]) {
+            let points = columns[0].iter().copied().zip(values.iter().copied());
+            panel.curve(&cases[index].label, Style::Line, points.collect());
+        }
+        for i in 0..POINTS {
+            let mut row = vec![(index + 1) as f64];
+            row.extend(columns.iter().map(|column| column[i]));
+            table.rows.push(row);
+        }
+        if let Some([fitted, predicted]) = heights {
+            outcome.numbers.push(Number {
+                figure: figure.to_owned(),
+                quantity: named(&cases[index], "scale height of the tail, fitted"),
+                ours: Some(fitted),
+                printed: None,
+                note: format!("the exponential tail predicts {predicted:.4}"),
+            });
+        }
+    }
+    picture(&mut outcome, "", &drawn, table);
+    Ok(outcome)
+}
+
+/// h of exp(−y/h), fitted and from the temperature and the parameter that balance gravity.
+fn scale_heights(
+    setup: &Setup,
+    base: &landau_solver::base::BaseState,
+    columns: &[Vec<f64>],
+    (stretch, [of, parameter]): Tail,
+) -> Result<[f64; 2]> {
+    let place = |fraction: f64| ((POINTS - 1) as f64 * fraction).round() as usize;
+    let [a, b] = stretch.map(|fraction| place(fraction.clamp(0.0, 1.0)));
+    let fall = (columns[1][a] / columns[1][b]).ln();
+    let structure = setup.model.structure();
+    let top = base.at_end(setup.model, landau_solver::model::End::Upper);
+    let value = top[structure.base_position(field(setup, of)?, 0)];
+    let parameter = Parameters::index(structure, parameter)?;
+    Ok([
+        (columns[0][b] - columns[0][a]) / fall,
+        value * base.parameters.values[parameter],
+    ])
+}
+
+pub(super) fn spectrum(
+    shop: &Workshop,
+    figure: &str,
+    cases: &[Case],
+    over: &Axis,
+    resolutions: &[usize],
+) -> Result<Outcome> {
+    let mut outcome = Outcome::default();
+    let all: Vec<Case> = cases
+        .iter()
+        .flat_map(|case| {
+            resolutions.iter().map(|&resolution| Case {
+                label: named(case, &format!("M = {resolution}")),
+                resolution: Some(resolution),
+                ..case.clone()
+            })
+        })
+        .collect();
+    let found = each(&all, &mut outcome.failures, |case| {
+        shop.with_setup(case, |setup| {
+            let base = setup.base(None)?;
+            setup.with_problem(&base, |problem| {
+                let mut rows = Vec::new();
+                for k in over.values() {
+                    let mode = spectrum::leading(problem, k)?;
+                    let adjoint =
+                        adjoint_mode(problem, &mode).map_or(f64::NAN, |adjoint| adjoint.c.re);
+                    rows.push([k, mode.c.re, adjoint]);
+                }
+                Ok(rows)
+            })
+        })
+    })?;
+    let mut panel = Panel::new("least stable mode", "k", "growth rate");
+    let mut table = Table::new(&["case", "k", "L", "L†"]);
+    let mut difference = Panel::new("L against L†", "k", "|difference|");
+    difference.logarithmic[1] = true;
+    for (index, rows) in found {
+        let label = &all[index].label;
+        let of = |column: usize| rows.iter().map(|r| (r[0], r[column])).collect();
+        panel.curve(&format!("L, {label}"), Style::Line, of(1));
+        panel.curve(&format!("L†, {label}"), Style::Dots, of(2));
+        let gaps: Vec<(f64, f64)> = rows.iter().map(|r| (r[0], (r[1] - r[2]).abs())).collect();
+        let largest = gaps.iter().map(|g| g.1).filter(|g| g.is_finite());
+        outcome.numbers.push(Number {
+            figure: figure.to_owned(),
+            quantity: format!("{label}: largest |L − L†| over {}", over.name),
+            ours: Some(largest.fold(0.0, f64::max)),
+            printed: None,
+            note: all[index].note.clone(),
+        });
+        difference.curve(label, Style::Line, gaps);
+        for row in &rows {
+            table
+                .rows
+                .push(vec![(index + 1) as f64, row[0], row[1], row[2]]);
+        }
+    }
+    picture(&mut outcome, "", &[panel, difference], table);
+    Ok(outcome)
+}

@@ -1,0 +1,20 @@
+//! How far a long study is: told to whoever asks, printed by nobody here.
+
+/// Somebody who is told.
+pub trait Progress: Sync {
+    /// Steps in all.
+    fn begin(&self, steps: usize);
+    /// Steps done since.
+    fn advance(&self, steps: usize);
+    /// There is no more to do.
+    fn end(&self);
+}
+
+/// Nobody.
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _: usize) {}
+    fn advance(&self, _: usize) {}
+    fn end(&self) {}
+}
