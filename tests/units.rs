@@ -72,12 +72,13 @@ amplitude {{ at y = 0 {{ |v| = k*l*speed; }} }}
 "
         )
     };
-    let all: [(&dyn Fn(f64, f64) -> String, f64, &str); 2] =
-        [(&strip, 1.0, "-M 24"), (&channel, 1.0, "-M 60")];
-    for (spec, k, options) in all {
+    /// A spec by its units of time and length.
+    type Spec<'a> = &'a dyn Fn(f64, f64) -> String;
+    let all: [(Spec, &str); 2] = [(&strip, "-M 24"), (&channel, "-M 60")];
+    for (spec, options) in all {
         let answer = |time: f64, length: f64| {
             let path = written("units.model", &spec(time, length));
-            let k = k / length;
+            let k = 1.0 / length;
             let found = json(&format!("point {} --k {k:e} {options}", path.display()));
             let value = |place: &str| number(&found, place) * time;
             let kind = found["bifurcation"].as_str().expect("a kind").to_owned();

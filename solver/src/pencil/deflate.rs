@@ -21,6 +21,9 @@ const FIRST_SHIFT: f64 = 0.577_215_664_901_532_9;
 /// The shift over the scale of the slow eigenvalues at which these are accurate.
 const GOOD_SHIFT: std::ops::Range<f64> = 1e-3..1e6;
 
+/// An eigenvalue with its right eigenvector.
+pub type Mode = (C64, Vec<C64>);
+
 /// A pencil without infinite eigenvalues: x = basis · w.
 pub struct Reduced<T: Scalar> {
     operator: Mat<T>,
@@ -81,7 +84,7 @@ impl<T: Scalar> Reduced<T> {
     ///
     /// # Errors
     /// An iteration that does not converge.
-    pub fn eigenvectors(&self) -> Result<(Spectrum, Vec<(C64, Vec<C64>)>)> {
+    pub fn eigenvectors(&self) -> Result<(Spectrum, Vec<Mode>)> {
         let mut vectors = Mat::zeros(0, 0);
         let values = self.solve(|shift, inverse| {
             let (values, found) = T::eigen(inverse)?;
@@ -92,7 +95,7 @@ impl<T: Scalar> Reduced<T> {
         let basis = Mat::from_fn(n, self.basis.ncols(), |i, j| self.basis[(i, j)].complex());
         let full = &basis * &vectors;
         let column = |j: usize| (0..n).map(|i| full[(i, j)]).collect();
-        let mut pairs: Vec<(C64, Vec<C64>)> = (0..values.len())
+        let mut pairs: Vec<Mode> = (0..values.len())
             .filter(|&j| values[j].re.is_finite() && values[j].im.is_finite())
             .map(|j| (values[j], column(j)))
             .collect();

@@ -4,5 +4,5 @@
 mod deflate;
 mod scale;
 
-pub use deflate::Reduced;
+pub use deflate::{Mode, Reduced};
 pub use scale::Spectrum;

@@ -10,7 +10,7 @@ pub use iteration::{beside, likeness};
 
 use crate::error::{Error, Result};
 use crate::model::C64;
-use crate::pencil::Reduced;
+use crate::pencil::{Mode, Reduced};
 use crate::problem::Problem;
 use iteration::refine;
 
@@ -56,9 +56,6 @@ pub fn adjoint_eigenvalues(problem: &Problem, k: f64) -> Result<Spectrum> {
         (false, false) => Reduced::<C64>::new(problem.pencil_of(adjoint, k))?.eigenvalues(),
     }
 }
-
-/// An eigenvalue with its right eigenvector.
-type Mode = (C64, Vec<C64>);
 
 /// Eigenvalues with right eigenvectors in the solver's basis, by decreasing real part.
 fn eigenvectors(problem: &Problem, k: f64) -> Result<(Spectrum, Vec<Mode>)> {

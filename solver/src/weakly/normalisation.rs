@@ -40,7 +40,7 @@ fn unchecked(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
         );
         let (wanted, place) = (out[0].abs(), out[1]);
         let value = point_value(problem, values, field, place);
-        if !(wanted > 0.0) {
+        if wanted.is_nan() || wanted <= 0.0 {
             return Err(vanishes(problem));
         }
         let block = &problem.direct.layout.columns[field];

@@ -95,20 +95,17 @@ pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
         let left = rest[row].value + linear[row] * amplitudes[i];
         (ABOVE_FLOOR * left).max(ABOVE_ROUNDING * measured[i][row].rounding)
     };
-    let mut least: Option<(f64, usize, usize)> = None;
-    for row in 0..rest.len() {
+    let judged = |row: usize| {
         let clear = |i: &usize| {
             let value = measured[*i][row].value;
             value > floor(row, *i) && value > 0.0
         };
-        let Some(last) = (ASYMPTOTIC + 1..HALVINGS).rev().find(clear) else {
-            continue;
-        };
+        let last = (ASYMPTOTIC + 1..HALVINGS).rev().find(clear)?;
         let slope = (measured[last - 1][row].value / measured[last][row].value).log2();
-        if least.is_none_or(|(other, ..)| slope < other) {
-            least = Some((slope, row, last - 1));
-        }
-    }
+        Some((slope, row, last - 1))
+    };
+    let judged = (0..rest.len()).filter_map(judged);
+    let least = judged.min_by(|a, b| a.0.total_cmp(&b.0));
     match least {
         Some((slope, row, i)) => ResidualOrder {
             slope: Some(slope),
