@@ -30,18 +30,24 @@ fn check_says_what_is_wrong() {
         }
         let expected = fs::read_to_string(&file).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert_eq!(answer.err, expected, "{name}");
-        // file:line:column, a caret, an expectation
+        // file:line:column of the spec or of a law file, the source line, a caret below it.
+        let place = answer
+            .err
+            .lines()
+            .find_map(|line| line.trim_start().strip_prefix("--> "))
+            .unwrap_or_else(|| panic!("{name}: no place in {}", answer.err));
+        let parts: Vec<&str> = place.split(':').collect();
+        let whole = |text: &str| text.parse::<usize>().is_ok_and(|n| n > 0);
         assert!(
-            answer.err.contains(&format!("--> {spec}:"))
-                || answer.err.contains("--> tests/diagnostics/"),
-            "{name}: {}",
-            answer.err
+            parts.len() == 3 && whole(parts[1]) && whole(parts[2]),
+            "{name}: {place}"
         );
         assert!(
-            answer.err.contains('^') || answer.err.contains('-'),
-            "{name}: {}",
-            answer.err
+            parts[0] == spec || parts[0].ends_with(".law"),
+            "{name}: {place}"
         );
+        let caret = |line: &str| line.contains('|') && line.contains('^');
+        assert!(answer.err.lines().any(caret), "{name}: {}", answer.err);
     }
 }
 

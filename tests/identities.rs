@@ -221,9 +221,10 @@ fn slow_modes_of_the_adjoint_converge() {
     }
 }
 
-/// A model whose coefficients of one nonlinear term have the wrong sign.
+/// A model one of whose emitted coefficients has the wrong sign.
 struct Planted {
     model: Box<dyn Model>,
+    kernel: KernelId,
     coefficient: usize,
 }
 
@@ -242,7 +243,7 @@ impl Model for Planted {
 
     fn evaluate(&self, kernel: KernelId, point: &[f64], out: &mut [f64]) {
         self.model.evaluate(kernel, point, out);
-        if kernel == KernelId::Nonlinear {
+        if kernel == self.kernel {
             out[self.coefficient] = -out[self.coefficient];
         }
     }
@@ -263,6 +264,7 @@ fn planted_sign_is_found() {
     for coefficient in [1, count / 3, 2 * count / 3] {
         let planted = Planted {
             model: built("vibrated_bed"),
+            kernel: KernelId::Nonlinear,
             coefficient,
         };
         let (order, second, third) = with_problem(&planted, 50, &[], |problem| {
@@ -280,5 +282,77 @@ fn planted_sign_is_found() {
             order.is_nan() || (order - 4.0).abs() >= 0.08,
             "coefficient {coefficient} passed the residual order: {order}"
         );
+    }
+}
+
+/// Every coefficient of N2 and N3, of L†, and of every adjoint condition of two terms, one after another: its
+/// wrong sign is noticed.
+#[test]
+fn every_planted_sign_is_found() {
+    let cases: [(&str, f64, usize, &[(&str, &str)]); 4] = [
+        ("swift_hohenberg_strip", 1.05, 20, &[("r", "1.2")]),
+        ("rayleigh_benard", 3.0, 24, &[("Ra", "2000")]),
+        ("robin_strip", 1.0, 20, &[]),
+        ("granular_couette", 3.0, 10, &[]),
+    ];
+    for (name, k, m, settings) in cases {
+        let plant = |kernel: KernelId, coefficient: usize| Planted {
+            model: built(name),
+            kernel,
+            coefficient,
+        };
+        let model = built(name);
+        let structure = model.structure();
+        for coefficient in 0..structure.form_coefficients {
+            // A coefficient that vanishes at this base state has no sign.
+            let values = with_problem(model.as_ref(), m, settings, |problem| {
+                let at = |xi: f64| problem.base.point(model.as_ref(), xi, k);
+                [-0.7, 0.1, 0.6]
+                    .map(|xi| evaluate(model.as_ref(), KernelId::Nonlinear, &at(xi))[coefficient])
+            });
+            if values.iter().all(|v| *v == 0.0) {
+                continue;
+            }
+            let planted = plant(KernelId::Nonlinear, coefficient);
+            let (order, worst) = with_problem(&planted, m, settings, |problem| {
+                let routes = [2, 3].map(|degree| second_route(problem, degree).0);
+                (order(problem, k), routes[0].max(routes[1]))
+            });
+            assert!(
+                worst > 1e-6,
+                "{name}: {coefficient} passed the second route"
+            );
+            assert!(
+                order.is_nan() || (order - 4.0).abs() > 0.08 || worst > 1e-6,
+                "{name}: {coefficient} passed the residual order"
+            );
+        }
+        let broken = |planted: &Planted| {
+            with_problem(planted, m, settings, |problem| {
+                (0..4)
+                    .map(|seed| duality(problem, k, seed))
+                    .fold(0.0, f64::max)
+            }) > 1e-8
+        };
+        for (coefficient, term) in structure.adjoint.iter().enumerate() {
+            // M0† stands apart from L†, and a row of one term may be turned as a whole.
+            if term.jet.t == 0 {
+                let planted = plant(KernelId::Adjoint, coefficient);
+                assert!(broken(&planted), "{name}: term {coefficient} of L† passed");
+            }
+        }
+        let Ok(conditions) = &structure.cases[0].adjoint else {
+            panic!("{name} has adjoint conditions");
+        };
+        let mut first = 0;
+        for condition in conditions {
+            for coefficient in first..first + condition.jets.len() {
+                if condition.jets.len() > 1 {
+                    let planted = plant(KernelId::AdjointConditions(0), coefficient);
+                    assert!(broken(&planted), "{name}: condition {coefficient} passed");
+                }
+            }
+            first += condition.jets.len();
+        }
     }
 }

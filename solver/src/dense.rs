@@ -296,3 +296,41 @@ pub fn norm<T: Scalar>(x: &[T]) -> f64 {
 pub fn scaled<T: Scalar>(x: &[T], factor: f64) -> Vec<T> {
     x.iter().map(|a| a.times(factor)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{C64, Factorised, dot};
+    use faer::Mat;
+
+    /// Hilbert's matrix, its rows and columns in units of their own: A x = b and Aᴴ y = b.
+    #[test]
+    fn systems_in_any_units() {
+        let n = 5;
+        let unit = |i: usize| 10_f64.powi(7 * i as i32 - 14);
+        let matrix = Mat::from_fn(n, n, |i, j| {
+            let hilbert = 1.0 / (i + j + 1) as f64;
+            C64::new(hilbert, if i == j { 1.0 } else { 0.0 }) * (unit(i) * unit(n - 1 - j))
+        });
+        let right: Vec<C64> = (0..n).map(|i| C64::new(unit(i), -0.5 * unit(i))).collect();
+        let factorised = Factorised::new(matrix.clone());
+        let x = factorised.solve_regular(&right).expect("a regular matrix");
+        for (i, b) in right.iter().enumerate() {
+            let row: C64 = (0..n).map(|j| matrix[(i, j)] * x[j]).sum();
+            assert!((row - b).norm() < 1e-12 * b.norm());
+        }
+        // ⟨y, A x⟩ = ⟨Aᴴ y, x⟩
+        let y = factorised.solve_adjoint(&right);
+        let (left, other) = (dot(&y, &right), dot(&right, &x));
+        assert!((left - other).norm() < 1e-12 * left.norm());
+    }
+
+    #[test]
+    fn a_singular_matrix_has_no_solution() {
+        let matrix = Mat::from_fn(3, 3, |i, j| (i + 1) as f64 * (j + 2) as f64);
+        assert!(
+            Factorised::new(matrix)
+                .solve_regular(&[1.0, 2.0, 3.0])
+                .is_none()
+        );
+    }
+}

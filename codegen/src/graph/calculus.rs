@@ -209,3 +209,80 @@ impl Graph {
         result
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Function, Graph, Rational, Variable};
+    use crate::graph::Id;
+    use num_traits::One;
+
+    fn slope(graph: &mut Graph, id: Id) -> Id {
+        graph.differentiate(id, Variable::Coordinate)
+    }
+
+    fn power(graph: &mut Graph, id: Id, exponent: i64) -> Id {
+        graph.pow(id, Rational::from_integer(exponent.into()))
+    }
+
+    /// f' of every elementary function, by the identity that defines it.
+    #[test]
+    fn elementary_functions() {
+        let mut graph = Graph::new();
+        let y = graph.coordinate();
+        let one = graph.one();
+        for function in Function::ALL {
+            let f = graph.call(function, y);
+            let found = slope(&mut graph, f);
+            let square = power(&mut graph, f, 2);
+            let expected = match function {
+                Function::Exp => f,
+                Function::Log => power(&mut graph, y, -1),
+                Function::Sin => graph.call(Function::Cos, y),
+                Function::Cos => {
+                    let sine = graph.call(Function::Sin, y);
+                    graph.neg(sine)
+                }
+                Function::Tan => graph.add(one, square),
+                Function::Sinh => graph.call(Function::Cosh, y),
+                Function::Cosh => graph.call(Function::Sinh, y),
+                Function::Tanh => graph.sub(one, square),
+                Function::Atan => {
+                    let below = power(&mut graph, y, 2);
+                    let below = graph.add(one, below);
+                    power(&mut graph, below, -1)
+                }
+            };
+            let rest = graph.sub(found, expected);
+            assert!(graph.vanishes(rest), "{function:?}");
+        }
+    }
+
+    /// (u/v)' = (u' v − u v')/v², (√u)' = u'/(2√u), the chain rule.
+    #[test]
+    fn rules() {
+        let mut graph = Graph::new();
+        let y = graph.coordinate();
+        let (u, v) = (graph.call(Function::Sin, y), graph.call(Function::Exp, y));
+        let quotient = graph.div(u, v);
+        let found = slope(&mut graph, quotient);
+        let (du, dv) = (slope(&mut graph, u), slope(&mut graph, v));
+        let (a, b) = (graph.mul(du, v), graph.mul(u, dv));
+        let above = graph.sub(a, b);
+        let below = power(&mut graph, v, 2);
+        let expected = graph.div(above, below);
+        let rest = graph.sub(found, expected);
+        assert!(graph.vanishes(rest));
+        let half = Rational::new(1.into(), 2.into());
+        let root = graph.pow(u, half.clone());
+        let found = slope(&mut graph, root);
+        let inverse = graph.pow(u, -half.clone());
+        let expected = graph.product([(du, Rational::one()), (inverse, Rational::one())]);
+        let expected = graph.scale(expected, half);
+        let rest = graph.sub(found, expected);
+        assert!(graph.vanishes(rest));
+        let nested = graph.call(Function::Exp, u);
+        let found = slope(&mut graph, nested);
+        let expected = graph.mul(nested, du);
+        assert_eq!(found, expected);
+    }
+}

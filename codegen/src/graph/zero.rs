@@ -121,3 +121,45 @@ fn rational(value: &Rational) -> Option<u64> {
     let denominator = modulo(Rational::from_integer(value.denom().clone()))?;
     Some(mul(numerator, inverse(denominator)?))
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::graph::{Graph, Rational};
+
+    #[test]
+    fn what_vanishes_and_what_does_not() {
+        let mut graph = Graph::new();
+        let (a, b) = (graph.parameter(0), graph.parameter(1));
+        let two = Rational::from_integer(2.into());
+        // (a + b)² − a² − 2ab − b²
+        let sum = graph.add(a, b);
+        let whole = graph.pow(sum, two.clone());
+        let (aa, bb, ab) = (
+            graph.pow(a, two.clone()),
+            graph.pow(b, two.clone()),
+            graph.mul(a, b),
+        );
+        let one = Rational::from_integer(1.into());
+        let parts = [
+            (whole, one.clone()),
+            (aa, -one.clone()),
+            (ab, -two),
+            (bb, -one),
+        ];
+        let rest = graph.sum(parts.clone());
+        assert!(graph.vanishes(rest));
+        let short = graph.sum(parts[..3].to_vec());
+        assert!(!graph.vanishes(short));
+        // 1/(a − a) is no zero.
+        let nothing = graph.sub(a, a);
+        assert!(graph.vanishes(nothing));
+        let infinite = graph.div(b, nothing);
+        assert!(!graph.vanishes(infinite));
+        // √a √a = a
+        let half = Rational::new(1.into(), 2.into());
+        let root = graph.pow(a, half);
+        let square = graph.mul(root, root);
+        let rest = graph.sub(square, a);
+        assert!(graph.vanishes(rest));
+    }
+}

@@ -250,3 +250,84 @@ fn differentiate(series: &[f64]) -> Vec<f64> {
     derivative[0] *= 0.5;
     derivative
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Grid, GridKind, clenshaw_curtis, coefficients, derivative_values};
+
+    /// d/dξ and d²/dξ² of ξⁿ between any two grids.
+    #[test]
+    fn differentiation_is_exact_for_polynomials() {
+        let kinds = [
+            GridKind::Gauss(9),
+            GridKind::Lobatto(9),
+            GridKind::Interior(9),
+        ];
+        let targets = [
+            GridKind::Gauss(6),
+            GridKind::Lower,
+            GridKind::Upper,
+            GridKind::Lobatto(12),
+        ];
+        for from in kinds.map(Grid::new) {
+            for to in targets.into_iter().chain(kinds).map(Grid::new) {
+                for n in 0..9_i32 {
+                    for order in 0..3_i32 {
+                        let factor: f64 = (0..order).map(|i| f64::from(n - i)).product();
+                        let matrix = from.derivative_on(&to, order as usize);
+                        for (i, xi) in to.nodes.iter().enumerate() {
+                            let found: f64 = from
+                                .nodes
+                                .iter()
+                                .enumerate()
+                                .map(|(j, x)| matrix[(i, j)] * x.powi(n))
+                                .sum();
+                            let power = (n - order).max(0);
+                            let expected = factor * xi.powi(power);
+                            assert!((found - expected).abs() < 1e-10, "ξ^{n}, order {order}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn quadrature_is_exact_for_polynomials() {
+        let grid = Grid::new(GridKind::Lobatto(10));
+        let weights = clenshaw_curtis(10);
+        for n in 0..10_i32 {
+            let found: f64 = weights
+                .iter()
+                .zip(&grid.nodes)
+                .map(|(w, x)| w * x.powi(n))
+                .sum();
+            let expected = if n % 2 == 0 {
+                2.0 / f64::from(n + 1)
+            } else {
+                0.0
+            };
+            assert!((found - expected).abs() < 1e-14, "ξ^{n}: {found}");
+        }
+    }
+
+    /// T₄ = 8ξ⁴ − 8ξ² + 1: T₄(1) = 1, T₄'(1) = 16, T₄''(1) = 80.
+    #[test]
+    fn series_of_a_chebyshev_polynomial() {
+        let grid = Grid::new(GridKind::Lobatto(8));
+        let values: Vec<f64> = grid
+            .nodes
+            .iter()
+            .map(|x| 8.0 * x.powi(4) - 8.0 * x.powi(2) + 1.0)
+            .collect();
+        let series = coefficients(&values);
+        for (n, c) in series.iter().enumerate() {
+            let expected = if n == 4 { 1.0 } else { 0.0 };
+            assert!((c - expected).abs() < 1e-14, "coefficient {n}");
+        }
+        let found = derivative_values(&series, 1.0, 2);
+        for (found, expected) in found.iter().zip([1.0, 16.0, 80.0]) {
+            assert!((found - expected).abs() < 1e-11);
+        }
+    }
+}

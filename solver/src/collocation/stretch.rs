@@ -117,3 +117,38 @@ impl Stretch {
         result
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Stretch;
+
+    #[test]
+    fn a_map_and_its_inverse() {
+        let layer = Stretch::Layer {
+            centre: 0.3,
+            width: 0.02,
+        };
+        for i in 0..=20 {
+            let xi = -1.0 + 0.1 * f64::from(i);
+            assert!((layer.xi(layer.eta(xi)) - xi).abs() < 1e-13);
+        }
+    }
+
+    /// F(η) = η: d/dξ and d²/dξ² by differences of η(ξ).
+    #[test]
+    fn derivatives_through_the_map() {
+        let layer = Stretch::Layer {
+            centre: -0.2,
+            width: 0.1,
+        };
+        for xi in [-0.9, -0.25, 0.0, 0.6] {
+            let eta = |s: f64| layer.eta(xi + s);
+            let found = layer.compose(xi, &[eta(0.0), 1.0, 0.0]);
+            let h = 1e-4;
+            let first = (eta(h) - eta(-h)) / (2.0 * h);
+            let second = (eta(h) - 2.0 * eta(0.0) + eta(-h)) / (h * h);
+            assert!((found[1] - first).abs() < 1e-4 * first.abs());
+            assert!((found[2] - second).abs() < 1e-3 * second.abs().max(1.0));
+        }
+    }
+}

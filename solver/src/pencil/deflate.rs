@@ -12,6 +12,8 @@ use faer::{Mat, MatRef};
 const MOST_DEFLATIONS: usize = 6;
 /// Singular directions of M0 after deflation, relative to its largest.
 const RANK: f64 = 1e-11;
+/// An equation of no larger terms, relative to the largest of all, says nothing.
+const NOISE: f64 = 1e-15;
 /// Rounds in which rows and columns are brought to comparable size.
 const BALANCING: usize = 3;
 /// Shifts tried: one, one on the scale of what it found, and one beside an eigenvalue that was hit.
@@ -38,6 +40,8 @@ impl<T: Scalar> Reduced<T> {
     /// A pencil that is singular for every c, or has no finite eigenvalue.
     pub fn new((mut operator, mut mass): (Mat<T>, Mat<T>)) -> Result<Self> {
         let mut basis = balance(&mut operator, &mut mass);
+        // Against the whole, not against what is left of it: the last thing left may be noise.
+        let (terms, masses) = (largest(&operator), largest(&mass));
         for _ in 0..2 * MOST_DEFLATIONS {
             let size = operator.nrows();
             let zero = |i: &usize| (0..size).all(|j| mass[(*i, j)].size() == 0.0);
@@ -48,7 +52,7 @@ impl<T: Scalar> Reduced<T> {
                 ));
             }
             if algebraic.is_empty() {
-                if !expose(&mut operator, &mut mass) {
+                if !expose(&mut operator, &mut mass, masses) {
                     return Ok(Reduced {
                         operator,
                         mass,
@@ -57,7 +61,7 @@ impl<T: Scalar> Reduced<T> {
                 }
                 continue;
             }
-            let null = null_space(&operator, &algebraic)?;
+            let null = null_space(&operator, &algebraic, terms)?;
             let rows = |m: &Mat<T>| Mat::from_fn(dynamic.len(), size, |i, j| m[(dynamic[i], j)]);
             operator = rows(&operator) * &null;
             mass = rows(&mass) * &null;
@@ -199,15 +203,18 @@ fn largest_of_row<T: Scalar>(matrix: &Mat<T>, row: usize) -> f64 {
     sizes.fold(f64::MIN_POSITIVE, f64::max)
 }
 
+fn largest<T: Scalar>(matrix: &Mat<T>) -> f64 {
+    let rows = (0..matrix.nrows()).map(|row| largest_of_row(matrix, row));
+    rows.fold(0.0, f64::max)
+}
+
 /// Rotates rows so that hidden algebraic equations show as rows without mass; false where there are none.
-fn expose<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>) -> bool {
+fn expose<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>, masses: f64) -> bool {
     let size = mass.nrows();
     let qr = mass.col_piv_qr();
     let r = qr.thin_R();
-    let largest = r[(0, 0)].size();
-    let rank = (0..size)
-        .filter(|&i| r[(i, i)].size() > RANK * largest)
-        .count();
+    let least = RANK * r[(0, 0)].size().max(masses);
+    let rank = (0..size).filter(|&i| r[(i, i)].size() > least).count();
     if rank == size {
         return false;
     }
@@ -224,8 +231,11 @@ fn expose<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>) -> bool {
 
 /// The x for which the algebraic rows vanish: the last columns of Q of their adjoint, each row scaled first
 /// so that no equation outweighs another.
-fn null_space<T: Scalar>(operator: &Mat<T>, algebraic: &[usize]) -> Result<Mat<T>> {
+fn null_space<T: Scalar>(operator: &Mat<T>, algebraic: &[usize], terms: f64) -> Result<Mat<T>> {
     let size = operator.ncols();
+    let noise = algebraic
+        .iter()
+        .any(|&row| largest_of_row(operator, row) <= NOISE * terms);
     let constraints = Mat::from_fn(size, algebraic.len(), |j, a| {
         let row = algebraic[a];
         operator[(row, j)]
@@ -236,7 +246,7 @@ fn null_space<T: Scalar>(operator: &Mat<T>, algebraic: &[usize]) -> Result<Mat<T
     let r = qr.thin_R();
     let count = algebraic.len();
     let largest = r[(0, 0)].size();
-    if (0..count).any(|i| r[(i, i)].size() <= RANK * largest) {
+    if noise || (0..count).any(|i| r[(i, i)].size() <= RANK * largest) {
         return Err(Error::computation(
             "the linear problem is singular for every growth rate: a field is determined up to \
              something arbitrary; name it as `gauge` in the block `mean`, or check the balances",
@@ -244,4 +254,69 @@ fn null_space<T: Scalar>(operator: &Mat<T>, algebraic: &[usize]) -> Result<Mat<T
     }
     let q = qr.compute_Q();
     Ok(q.subcols(count, size - count).to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Reduced;
+    use faer::{Mat, mat};
+
+    fn values(operator: Mat<f64>, mass: Mat<f64>) -> Option<Vec<f64>> {
+        let reduced = Reduced::new((operator, mass)).ok()?;
+        let spectrum = reduced.eigenvalues().ok()?;
+        Some(spectrum.values.iter().map(|c| c.re).collect())
+    }
+
+    fn agree(found: Option<Vec<f64>>, expected: &[f64]) {
+        let found = found.expect("a spectrum");
+        assert_eq!(found.len(), expected.len(), "{found:?}");
+        for (a, b) in found.iter().zip(expected) {
+            assert!((a - b).abs() < 1e-12, "{found:?}");
+        }
+    }
+
+    /// x' = −x + y, 0 = x − 2y: x' = −x/2.
+    #[test]
+    fn a_constraint() {
+        agree(
+            values(mat![[-1.0, 1.0], [1.0, -2.0]], mat![[1.0, 0.0], [0.0, 0.0]]),
+            &[-0.5],
+        );
+    }
+
+    /// x' = −3x + z, y' = −y − z, 0 = x − y: hidden z = x, hence x' = −2x. Also with y' in other units.
+    #[test]
+    fn a_hidden_constraint() {
+        for unit in [1.0, 1e-9, 1e9] {
+            let operator = mat![[-3.0, 0.0, 1.0], [0.0, -unit, -unit], [1.0, -1.0, 0.0]];
+            let mass = mat![[1.0, 0.0, 0.0], [0.0, unit, 0.0], [0.0, 0.0, 0.0]];
+            agree(values(operator, mass), &[-2.0]);
+        }
+    }
+
+    /// x' = y, 0 = x: nothing moves; nor where z cancels, x' = −3x + z, y' = −y + z, 0 = x − y. And a z that no
+    /// equation holds.
+    #[test]
+    fn pencils_without_an_answer() {
+        let cancelling = mat![[-3.0, 0.0, 1.0], [0.0, -1.0, 1.0], [1.0, -1.0, 0.0]];
+        let mass = mat![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]];
+        assert_eq!(values(cancelling, mass), None);
+        assert_eq!(
+            values(mat![[0.0, 1.0], [1.0, 0.0]], mat![[1.0, 0.0], [0.0, 0.0]]),
+            None
+        );
+        let undetermined = mat![[-1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [2.0, 2.0, 0.0]];
+        let mass = mat![[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]];
+        assert_eq!(values(undetermined, mass), None);
+    }
+
+    /// Eigenvalues of one size around another: answers do not depend on the unit of time.
+    #[test]
+    fn any_unit_of_time() {
+        for unit in [1e-12, 1.0, 1e12] {
+            let operator = mat![[-unit, 0.0], [0.5 * unit, 2.0 * unit]];
+            let found = values(operator, Mat::identity(2, 2)).expect("a spectrum");
+            assert!((found[0] / unit - 2.0).abs() < 1e-12 && (found[1] / unit + 1.0).abs() < 1e-12);
+        }
+    }
 }

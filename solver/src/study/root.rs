@@ -67,3 +67,22 @@ pub fn brent(
     }
     Err(Error::computation(format!("no root was found near {b}")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::brent;
+
+    #[test]
+    fn roots_of_known_functions() {
+        let root = |f: fn(f64) -> f64, a: f64, b: f64| {
+            brent(|x| Ok(f(x)), (a, f(a)), (b, f(b)), 1e-14)
+                .expect("a root")
+                .0
+        };
+        // Dottie's number
+        assert!((root(|x| x.cos() - x, 0.0, 1.0) - 0.739_085_133_215_160_6).abs() < 1e-13);
+        assert!((root(|x| x * x * x - 2.0, 3.0, 0.0) - 2.0_f64.cbrt()).abs() < 1e-13);
+        // Flat on one side, steep on the other.
+        assert!((root(|x| (20.0 * (x - 0.3)).tanh(), -1.0, 1.0) - 0.3).abs() < 1e-12);
+    }
+}
