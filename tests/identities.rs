@@ -289,7 +289,8 @@ fn planted_sign_is_found() {
 /// wrong sign is noticed.
 #[test]
 fn every_planted_sign_is_found() {
-    let cases: [(&str, f64, usize, &[(&str, &str)]); 4] = [
+    type Settings = &'static [(&'static str, &'static str)];
+    let cases: [(&str, f64, usize, Settings); 4] = [
         ("swift_hohenberg_strip", 1.05, 20, &[("r", "1.2")]),
         ("rayleigh_benard", 3.0, 24, &[("Ra", "2000")]),
         ("robin_strip", 1.0, 20, &[]),

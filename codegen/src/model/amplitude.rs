@@ -1,7 +1,8 @@
 //! The normalisation: an integral of squared moduli, or a point value.
 
+use super::context::Context;
 use super::mistake::view;
-use super::scope::{Context, Names, Resolved, is_two};
+use super::scope::{Names, Resolved, is_two};
 use super::statement::field_index;
 use super::{Amplitude, Field, Weight};
 use crate::diagnostic::Diagnostic;

@@ -1,7 +1,8 @@
 //! What the names of a spec are declared as: coordinates, parameters, fields, definitions.
 
+use super::context::Context;
 use super::mistake::{beginning, twice};
-use super::scope::{Context, Names};
+use super::scope::Names;
 use super::statement::keep;
 use super::*;
 use crate::diagnostic::Diagnostic;

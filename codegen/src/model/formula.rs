@@ -5,7 +5,8 @@
 //! that form which the model cannot have, such as kappa0_my, is read as a symbol of its own.
 
 use super::Model;
-use super::scope::{Context, View};
+use super::context::Context;
+use super::scope::View;
 use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::graph::{Graph, Id, LawAtom, Node};
 use crate::syntax::parse_formula;

@@ -1,8 +1,9 @@
 //! Law files: read, resolved, their laws bound to the fields of the model.
 
 use super::Law;
+use super::context::Context;
 use super::mistake::twice;
-use super::scope::{Context, Names, Resolved, Scope};
+use super::scope::{Names, Resolved, Scope};
 use crate::Sources;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::syntax::parse_laws;

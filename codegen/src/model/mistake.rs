@@ -1,6 +1,7 @@
 //! Mistakes that several blocks share.
 
-use super::scope::{Context, Names, Resolved, View};
+use super::context::Context;
+use super::scope::{Names, Resolved, View};
 use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::graph::Function;
 use crate::syntax::tree::{Expression, Name};
@@ -103,18 +104,4 @@ impl Names {
         let expected = "a field, a parameter, a law or a definition";
         Diagnostic::new(place.clone(), format!("`{name}` is not known"), expected).maybe_hint(hint)
     }
-}
-
-/// A name of a kind that its context does not take.
-pub(super) fn misplaced(place: &Location, name: &str, what: &str, context: Context) -> Diagnostic {
-    let expected = match context {
-        Context::Profile => "parameters and the cross-stream coordinate",
-        Context::Amplitude => "parameters and k",
-        _ => "parameters and numbers",
-    };
-    Diagnostic::new(
-        place.clone(),
-        format!("`{name}` is {what}, which has no place here"),
-        expected,
-    )
 }

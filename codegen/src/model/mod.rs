@@ -1,6 +1,7 @@
 //! The checked model: names resolved, definitions expanded, every expression a node of one graph.
 
 mod amplitude;
+mod context;
 mod declaration;
 mod formula;
 mod import;

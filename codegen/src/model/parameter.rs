@@ -1,7 +1,8 @@
 //! Parameters: found by name, declared with default and domain, and constants.
 
 use super::Parameter;
-use super::scope::{Context, Names, Resolved, View};
+use super::context::Context;
+use super::scope::{Names, Resolved, View};
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::graph::{Id, Node};
 use crate::syntax::tree::*;

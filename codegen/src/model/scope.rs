@@ -1,7 +1,7 @@
 //! Names and what they stand for: one scope a file, definitions expanded where they are used.
 
 use super::Parameter;
-use super::mistake::misplaced;
+use super::context::Context;
 use crate::diagnostic::{Diagnostic, Location, SourceFile};
 use crate::graph::{Function, Graph, Id, Jet, LawAtom, Node, Operator, Rational};
 use crate::syntax::tree::*;
@@ -24,21 +24,6 @@ pub(super) struct Scope {
     /// Alias → (scope of the law file, name there).
     pub imports: BTreeMap<String, (usize, String)>,
     pub parameters: BTreeMap<String, ParameterItem>,
-}
-
-/// What names an expression may use.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Context {
-    /// Balances, conditions, outputs: everything.
-    State,
-    /// Law bodies: fields, but none of their derivatives.
-    Law,
-    /// Base profiles: parameters and the coordinate.
-    Profile,
-    /// Numbers: parameters alone.
-    Constant,
-    /// The right-hand side of the amplitude: parameters and k.
-    Amplitude,
 }
 
 /// Everything known while a model is being resolved.
@@ -209,20 +194,20 @@ impl Names {
         }
         if self.coordinate.as_deref() == Some(name) && view.scope == 0 {
             if matches!(view.context, Context::Constant | Context::Amplitude) {
-                return Err(misplaced(place, name, "the coordinate", view.context));
+                return Err(view.context.refusal(place, name, "the coordinate"));
             }
             return Ok(self.graph.coordinate());
         }
         if view.scope == 0 {
             if let Some(&field) = self.fields.get(name) {
                 if !matches!(view.context, Context::State | Context::Law) {
-                    return Err(misplaced(place, name, "a field", view.context));
+                    return Err(view.context.refusal(place, name, "a field"));
                 }
                 return Ok(self.graph.jet(Jet::value(field)));
             }
             if let Some(&law) = self.laws.get(name) {
                 if !matches!(view.context, Context::State | Context::Law) {
-                    return Err(misplaced(place, name, "a law", view.context));
+                    return Err(view.context.refusal(place, name, "a law"));
                 }
                 return Ok(self.law_atom(law));
             }

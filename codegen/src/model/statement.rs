@@ -1,8 +1,9 @@
 //! Each block of the spec, checked and made part of the model.
 
+use super::context::Context;
 use super::import::{Imported, bind_imports};
 use super::mistake::{beginning, twice};
-use super::scope::{Context, Names, Resolved};
+use super::scope::{Names, Resolved};
 use super::*;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::graph::{Jet, Node, Operator};

@@ -2,7 +2,8 @@
 
 use landau_report::figure::{Panel, Style, panels};
 use landau_solver::study::Setup;
-use landau_solver::study::sweep::{Column, Row, Sweep, column};
+use landau_solver::study::row::{Column, Row, column};
+use landau_solver::study::sweep::Sweep;
 
 /// Rows shown of a long table.
 const SHOWN: usize = 24;

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::model::{KernelId, Model, evaluate};
 use crate::parameters::Parameters;
 use newton::{Failure, Newton};
+use std::cell::Cell;
 
 /// Degrees tried until the Chebyshev coefficients have died out.
 const DEGREES: [usize; 7] = [36, 54, 80, 120, 180, 270, 400];
@@ -39,6 +40,24 @@ const MOST_ADJUSTMENTS: usize = 25;
 /// Smallest step of the continuation in parameters, as a fraction of the way.
 const SMALLEST_STEP: f64 = 1.0 / 256.0;
 
+/// What one base state is worth, in cubes of unknowns: some twenty seconds of one core.
+const WORTH: f64 = 3e11;
+
+/// A model, and what may still be spent on its base state: an answer that cannot be had should not take minutes.
+struct Effort<'m> {
+    model: &'m dyn Model,
+    left: Cell<f64>,
+}
+
+impl<'m> Effort<'m> {
+    fn new(model: &'m dyn Model) -> Self {
+        Effort {
+            model,
+            left: Cell::new(WORTH),
+        }
+    }
+}
+
 /// The base state at the given parameters, those set to `auto` determined on the way.
 ///
 /// # Errors
@@ -53,20 +72,28 @@ pub fn solve_near(
     parameters: &Parameters,
     near: Option<&BaseState>,
 ) -> Result<BaseState> {
-    if parameters.automatic.iter().any(|a| *a) {
-        determine(model, parameters, near)
+    let effort = Effort::new(model);
+    let solved = if parameters.automatic.iter().any(|a| *a) {
+        determine(&effort, parameters, near)
     } else {
-        fixed(model, parameters, near, FULL)
+        fixed(&effort, parameters, near, FULL)
+    };
+    // Spent on the way, it says nothing about the place where it ran out.
+    if solved.is_err() && effort.left.get() < 0.0 {
+        let place = "for want of work allowed to it";
+        return Err(describe(model, parameters, &Failure::Spent, place));
     }
+    solved
 }
 
 /// The state where every parameter has a value.
 fn fixed(
-    model: &dyn Model,
+    effort: &Effort,
     parameters: &Parameters,
     near: Option<&BaseState>,
     accuracy: Accuracy,
 ) -> Result<BaseState> {
+    let model = effort.model;
     check_interval(model, parameters)?;
     let structure = model.structure();
     if structure.base.solved.is_empty() {
@@ -79,11 +106,12 @@ fn fixed(
         model,
         parameters,
         resolved: accuracy.tail,
+        left: &effort.left,
     };
     let state = match newton.refine(start, &DEGREES) {
         Ok(state) => state,
         Err(_) => {
-            let rough = continuation(model, parameters, start)?;
+            let rough = continuation(effort, parameters, start)?;
             let refined = newton.refine(Some(&rough), &DEGREES);
             let place = "at the end of the continuation";
             refined.map_err(|failure| describe(model, parameters, &failure, place))?
@@ -108,10 +136,12 @@ impl BaseState {
     pub fn refined(&self, model: &dyn Model) -> Option<BaseState> {
         let next = DEGREES.iter().position(|&degree| degree > self.degree)?;
         let solved = !self.series.is_empty() && model.structure().coordinate.is_some();
+        let effort = Effort::new(model);
         let newton = Newton {
             model,
             parameters: &self.parameters,
             resolved: FULL.tail,
+            left: &effort.left,
         };
         let degree = solved.then(|| DEGREES[next])?;
         newton.solve(Some(self), degree, self.stretch).ok()
@@ -124,16 +154,18 @@ impl BaseState {
     /// # Errors
     /// As [`solve_near`].
     pub fn moved(&self, model: &dyn Model, parameters: &Parameters) -> Result<BaseState> {
+        let effort = Effort::new(model);
         let newton = Newton {
             model,
             parameters,
             resolved: FULL.tail,
+            left: &effort.left,
         };
         let solved = !self.series.is_empty() && self.case == parameters.case(model.structure());
         if solved && let Ok(state) = newton.solve(Some(self), self.degree, self.stretch) {
             return Ok(state);
         }
-        fixed(model, parameters, Some(self), FULL)
+        fixed(&effort, parameters, Some(self), FULL)
     }
 }
 
@@ -166,19 +198,21 @@ fn check_interval(model: &dyn Model, parameters: &Parameters) -> Result<()> {
 
 /// From a state that can be found to roughly the one that is asked for, in steps that adapt.
 fn continuation(
-    model: &dyn Model,
+    effort: &Effort,
     target: &Parameters,
     near: Option<&BaseState>,
 ) -> Result<BaseState> {
+    let model = effort.model;
     let start = match near {
         Some(state) => state.clone(),
-        None => at_defaults(model, target)?,
+        None => at_defaults(effort, target)?,
     };
     let step = |parameters: &Parameters, from: &BaseState| {
         let newton = Newton {
             model,
             parameters,
             resolved: ROUGH.tail,
+            left: &effort.left,
         };
         newton.refine(Some(from), &DEGREES).map_err(|failure| {
             let place = "on the way from the default parameters";
@@ -189,7 +223,8 @@ fn continuation(
 }
 
 /// The state at the defaults, the switches set as in `target`: there is nothing between two choices.
-fn at_defaults(model: &dyn Model, target: &Parameters) -> Result<BaseState> {
+fn at_defaults(effort: &Effort, target: &Parameters) -> Result<BaseState> {
+    let model = effort.model;
     let structure = model.structure();
     let mut parameters = Parameters::defaults(structure);
     for (index, info) in structure.parameters.iter().enumerate() {
@@ -201,6 +236,7 @@ fn at_defaults(model: &dyn Model, target: &Parameters) -> Result<BaseState> {
         model,
         parameters: &parameters,
         resolved: FULL.tail,
+        left: &effort.left,
     }
     .refine(None, &DEGREES)
     .map_err(|failure| describe(model, &parameters, &failure, "at the default parameters"))
@@ -273,35 +309,36 @@ fn describe(model: &dyn Model, parameters: &Parameters, failure: &Failure, place
 
 /// The state whose automatic parameters meet their conditions.
 fn determine(
-    model: &dyn Model,
+    effort: &Effort,
     parameters: &Parameters,
     near: Option<&BaseState>,
 ) -> Result<BaseState> {
-    if let Ok(state) = adjust(model, parameters, near, FULL) {
+    if let Ok(state) = adjust(effort, parameters, near, FULL) {
         return Ok(state);
     }
     // The automatic parameters adjusted at every step: their defaults may suit no other values.
     let start = match near {
         Some(state) => state.clone(),
         None => {
-            let mut defaults = at_defaults(model, parameters)?.parameters;
+            let mut defaults = at_defaults(effort, parameters)?.parameters;
             defaults.automatic.clone_from(&parameters.automatic);
-            adjust(model, &defaults, None, ROUGH)?
+            adjust(effort, &defaults, None, ROUGH)?
         }
     };
     let rough = walk(parameters, start, |at, from| {
-        adjust(model, at, Some(from), ROUGH)
+        adjust(effort, at, Some(from), ROUGH)
     })?;
-    adjust(model, parameters, Some(&rough), FULL)
+    adjust(effort, parameters, Some(&rough), FULL)
 }
 
 /// Newton's method on the automatic parameters, their derivative by differences.
 fn adjust(
-    model: &dyn Model,
+    effort: &Effort,
     parameters: &Parameters,
     near: Option<&BaseState>,
     accuracy: Accuracy,
 ) -> Result<BaseState> {
+    let model = effort.model;
     let structure = model.structure();
     let unknown: Vec<usize> = (0..parameters.values.len())
         .filter(|&i| parameters.automatic[i])
@@ -314,7 +351,7 @@ fn adjust(
         }
     }
     let conditions = |state: &BaseState| automatic_conditions(model, state, &unknown);
-    let mut state = fixed(model, &current, near, accuracy)?;
+    let mut state = fixed(effort, &current, near, accuracy)?;
     let mut residual = conditions(&state);
     for _ in 0..MOST_ADJUSTMENTS {
         let n = unknown.len();
@@ -323,7 +360,7 @@ fn adjust(
             let mut moved = current.clone();
             let step = 1e-6 * moved.values[index].abs().max(1e-3);
             moved.values[index] += step;
-            let shifted = conditions(&fixed(model, &moved, Some(&state), accuracy)?);
+            let shifted = conditions(&fixed(effort, &moved, Some(&state), accuracy)?);
             jacobian.set_column(column, &((shifted - &residual) / step));
         }
         let Some(step) = jacobian.lu().solve(&(-&residual)) else {
@@ -340,7 +377,7 @@ fn adjust(
         if largest.is_nan() || largest > BLIND {
             break;
         }
-        state = fixed(model, &current, Some(&state), accuracy)?;
+        state = fixed(effort, &current, Some(&state), accuracy)?;
         residual = conditions(&state);
         if largest < accuracy.change {
             return Ok(state);

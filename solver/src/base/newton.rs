@@ -10,6 +10,7 @@ use crate::model::{BaseJet, End, KernelId, Model, evaluate};
 use crate::parameters::Parameters;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
+use std::cell::Cell;
 use std::fmt;
 
 const MOST_ITERATIONS: usize = 40;
@@ -22,9 +23,15 @@ const STRETCHED_FROM: usize = 120;
 
 /// Why an iteration gave up.
 pub(super) enum Failure {
-    Damping { residual: f64 },
-    Iterations { residual: f64 },
+    Damping {
+        residual: f64,
+    },
+    Iterations {
+        residual: f64,
+    },
     NotFinite,
+    /// The work that a base state is worth is spent.
+    Spent,
 }
 
 impl fmt::Display for Failure {
@@ -40,6 +47,9 @@ impl fmt::Display for Failure {
                 )
             }
             Failure::NotFinite => f.write_str("a law has no value at the starting point"),
+            Failure::Spent => f.write_str(
+                "some twenty seconds of it: its layers may be too thin, or there may be none",
+            ),
         }
     }
 }
@@ -49,6 +59,8 @@ pub(super) struct Newton<'a> {
     pub parameters: &'a Parameters,
     /// Relative size of the last coefficients at which a profile counts as resolved.
     pub resolved: f64,
+    /// What may still be spent, in cubes of unknowns.
+    pub left: &'a Cell<f64>,
 }
 
 /// The discretised problem at one degree.
@@ -381,11 +393,22 @@ impl Discrete<'_> {
             })
     }
 
+    /// A solution of the system, or its assembly: either counts as the cube of its unknowns.
+    fn spend(&self) -> Result<(), Failure> {
+        let left = self.newton.left.get() - (self.size as f64).powi(3);
+        self.newton.left.set(left);
+        if left < 0.0 {
+            return Err(Failure::Spent);
+        }
+        Ok(())
+    }
+
     fn iterate(&self, mut values: Vec<f64>) -> Result<BaseState, Failure> {
         let (mut residual, mut jacobian) = self.system(&values).ok_or(Failure::NotFinite)?;
         let norm = |r: &[f64]| r.iter().map(|x| x * x).sum::<f64>().sqrt();
         let mut size = norm(&residual);
         for _ in 0..MOST_ITERATIONS {
+            self.spend()?;
             let right = Mat::from_fn(self.size, 1, |i, _| -residual[i]);
             let step = jacobian.partial_piv_lu().solve(&right);
             let reach = (0..self.size)
@@ -397,6 +420,7 @@ impl Discrete<'_> {
             }
             let mut damping = 1.0;
             loop {
+                self.spend()?;
                 let trial: Vec<f64> = values
                     .iter()
                     .enumerate()

@@ -4,7 +4,7 @@
 //! A line carries its place and a checksum over it, the rows and what the journal was made for. What does not
 //! fit is computed again. The file is locked while a run lives.
 
-use super::sweep::Row;
+use super::row::Row;
 use crate::error::{Error, Result};
 use crate::file::hash;
 use serde::{Deserialize, Serialize};

@@ -10,6 +10,7 @@ pub mod point;
 mod progress;
 pub mod quadrature;
 mod root;
+pub mod row;
 pub mod sensitivity;
 pub mod spectrum;
 pub mod sweep;

@@ -6,6 +6,7 @@
 
 use super::journal::Journal;
 use super::point::UNCONVERGED;
+use super::row::{COLUMNS, Row};
 use super::{Axis, Carried, Progress, Setup};
 use crate::error::{Error, Result};
 use crate::file::destination;
@@ -14,7 +15,6 @@ use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
 use crate::weakly::{self, Bifurcation, LandauPoint, Selection, equilibrium};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -22,66 +22,12 @@ use std::path::Path;
 const CHUNK: usize = 40;
 /// A second-order problem nearer to singularity than this, relative to the slow rates, makes a row no `ok`.
 const RESONANT: f64 = 1e-3;
-/// Columns after the axes.
-const COLUMNS: [&str; 11] = [
-    "c0_re",
-    "c0_im",
-    "c0_error",
-    "c2_re",
-    "c2_im",
-    "c2_error",
-    "amplitude",
-    "bifurcation",
-    "mean_flow",
-    "second_harmonic",
-    "status",
-];
-
 /// Evenly spaced values along one axis.
 #[derive(Clone, Debug)]
 pub struct Range {
     pub name: String,
     pub axis: Axis,
     pub values: Vec<f64>,
-}
-
-/// One row of the table; what has no answer is missing, and `status` says why.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
-pub struct Row {
-    pub coordinates: Vec<f64>,
-    pub c0: Option<[f64; 2]>,
-    /// Absolute error of c0, from a coarser collocation.
-    pub c0_error: Option<f64>,
-    pub c2: Option<[f64; 2]>,
-    pub c2_error: Option<f64>,
-    pub amplitude: Option<f64>,
-    pub bifurcation: String,
-    /// Distances of the problems for X[0;2] and X[2;2] from singularity.
-    pub mean_flow: Option<f64>,
-    pub second_harmonic: Option<f64>,
-    /// `ok`, or why there is no number, or what is near.
-    pub status: String,
-}
-
-/// A column of the table that can be drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Column {
-    A0,
-    A2,
-    /// A_e of an unstable mode.
-    Amplitude,
-}
-
-/// One column over the first axis; NaN where there is no value.
-pub fn column(rows: &[Row], column: Column) -> Vec<(f64, f64)> {
-    let value = |row: &Row| match column {
-        Column::A0 => row.c0.map(|c| c[0]),
-        Column::A2 => row.c2.map(|c| c[0]),
-        Column::Amplitude => row.amplitude.filter(|_| row.c0.is_some_and(|c| c[0] > 0.0)),
-    };
-    let point = |row: &Row| (row.coordinates[0], value(row).unwrap_or(f64::NAN));
-    rows.iter().map(point).collect()
 }
 
 /// A sweep over the product of its ranges, the first varying fastest.
@@ -259,7 +205,7 @@ impl Sweep<'_, '_> {
             progress.advance(places.len());
             places
                 .into_iter()
-                .map(|place| failed(place, &error))
+                .map(|place| Row::failed(place, &error))
                 .collect()
         })
     }
@@ -308,7 +254,7 @@ impl Sweep<'_, '_> {
             Ok(point) => row(collocations, place, &point)?,
             Err(error) => Row {
                 c0: Some([pair.c.re, pair.c.im]),
-                ..failed(place.to_vec(), &error)
+                ..Row::failed(place.to_vec(), &error)
             },
         };
         Ok((row, pair))
@@ -328,20 +274,8 @@ impl Sweep<'_, '_> {
         let failure =
             |e: csv::Error| Error::computation(format!("the table cannot be written: {e}"));
         writer.write_record(self.header()).map_err(failure)?;
-        let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
         for row in rows {
-            let mut record: Vec<String> = row.coordinates.iter().map(f64::to_string).collect();
-            for (pair, error) in [(row.c0, row.c0_error), (row.c2, row.c2_error)] {
-                record.push(number(pair.map(|p| p[0])));
-                record.push(number(pair.map(|p| p[1])));
-                record.push(number(error));
-            }
-            record.push(number(row.amplitude));
-            record.push(row.bifurcation.clone());
-            record.push(number(row.mean_flow));
-            record.push(number(row.second_harmonic));
-            record.push(row.status.clone());
-            writer.write_record(&record).map_err(failure)?;
+            writer.write_record(row.record()).map_err(failure)?;
         }
         writer
             .into_inner()
@@ -473,17 +407,9 @@ fn follow<C>(
                 carried = Some(next);
                 row
             }
-            Err(error) => failed(places[index].clone(), &error),
+            Err(error) => Row::failed(places[index].clone(), &error),
         });
         progress.advance(1);
     }
     rows.into_iter().flatten().collect()
-}
-
-fn failed(coordinates: Vec<f64>, error: &Error) -> Row {
-    Row {
-        coordinates,
-        status: error.to_string(),
-        ..Row::default()
-    }
 }

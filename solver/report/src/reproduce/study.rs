@@ -1,7 +1,7 @@
 //! A study file: which models, parameters and sweeps make which figure, and what was printed.
 
 use landau_solver::error::{Error, Result};
-use landau_solver::study::sweep::Column;
+use landau_solver::study::row::Column;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;

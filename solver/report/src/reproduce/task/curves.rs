@@ -1,14 +1,16 @@
 //! Landau coefficients along an axis, the 2:1 resonance, power laws at a bifurcation.
 
 use super::super::Workshop;
-use super::super::outcome::{Number, Outcome, Picture, Table};
+use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Asked, Axis, Case};
+use super::draw::{named, picture};
 use super::each;
 use super::points::question;
-use crate::figure::{Panel, Style, panels};
+use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
 use landau_solver::study::critical;
-use landau_solver::study::sweep::{Column, Range, Row, Sweep, column};
+use landau_solver::study::row::{Column, Row, column};
+use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::{self, Setup, Silent};
 
 /// Landau points of one case over an axis.
@@ -178,25 +180,4 @@ fn slope(points: &[(f64, f64)]) -> f64 {
     let (x, y) = (mean(|p| p.0), mean(|p| p.1));
     let above: f64 = logs.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
     above / logs.iter().map(|p| (p.0 - x).powi(2)).sum::<f64>()
-}
-
-/// `label: quantity`
-pub(super) fn named(case: &Case, quantity: &str) -> String {
-    if case.label.is_empty() {
-        quantity.to_owned()
-    } else {
-        format!("{}: {quantity}", case.label)
-    }
-}
-
-/// Adds the panels with their table, where there is anything to draw.
-pub(super) fn picture(outcome: &mut Outcome, caption: &str, drawn: &[Panel], table: Table) {
-    if let Some(svg) = panels(caption, drawn) {
-        outcome.pictures.push(Picture {
-            caption: caption.to_owned(),
-            svg,
-            table: Some(table),
-            files: Vec::new(),
-        });
-    }
 }

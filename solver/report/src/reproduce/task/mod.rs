@@ -1,6 +1,7 @@
 //! What a study can ask for, one module a sort of answer.
 
 mod curves;
+mod draw;
 mod planes;
 mod points;
 mod profiles;

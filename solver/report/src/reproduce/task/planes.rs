@@ -3,7 +3,7 @@
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Picture, Table};
 use super::super::study::{Axis, Case};
-use super::curves::{named, picture};
+use super::draw::{named, picture};
 use super::each;
 use crate::data::plane::{attributes, dataset};
 use crate::figure::{Panel, Style, pattern_pair};

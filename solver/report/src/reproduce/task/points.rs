@@ -3,7 +3,7 @@
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Asked, Axis, Case, Of};
-use super::curves::{named, picture};
+use super::draw::{named, picture};
 use super::{Named, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};

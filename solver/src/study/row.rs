@@ -1,0 +1,86 @@
+//! One row of a sweep's table, and the columns that can be drawn.
+
+use crate::error::Error;
+use serde::{Deserialize, Serialize};
+
+/// Columns after the axes.
+pub(super) const COLUMNS: [&str; 11] = [
+    "c0_re",
+    "c0_im",
+    "c0_error",
+    "c2_re",
+    "c2_im",
+    "c2_error",
+    "amplitude",
+    "bifurcation",
+    "mean_flow",
+    "second_harmonic",
+    "status",
+];
+
+/// One row of the table; what has no answer is missing, and `status` says why.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
+pub struct Row {
+    pub coordinates: Vec<f64>,
+    pub c0: Option<[f64; 2]>,
+    /// Absolute error of c0, from a coarser collocation.
+    pub c0_error: Option<f64>,
+    pub c2: Option<[f64; 2]>,
+    pub c2_error: Option<f64>,
+    pub amplitude: Option<f64>,
+    pub bifurcation: String,
+    /// Distances of the problems for X[0;2] and X[2;2] from singularity.
+    pub mean_flow: Option<f64>,
+    pub second_harmonic: Option<f64>,
+    /// `ok`, or why there is no number, or what is near.
+    pub status: String,
+}
+
+/// A column of the table that can be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Column {
+    A0,
+    A2,
+    /// A_e of an unstable mode.
+    Amplitude,
+}
+
+/// One column over the first axis; NaN where there is no value.
+pub fn column(rows: &[Row], column: Column) -> Vec<(f64, f64)> {
+    let value = |row: &Row| match column {
+        Column::A0 => row.c0.map(|c| c[0]),
+        Column::A2 => row.c2.map(|c| c[0]),
+        Column::Amplitude => row.amplitude.filter(|_| row.c0.is_some_and(|c| c[0] > 0.0)),
+    };
+    let point = |row: &Row| (row.coordinates[0], value(row).unwrap_or(f64::NAN));
+    rows.iter().map(point).collect()
+}
+
+impl Row {
+    /// The row of a point without an answer.
+    pub(super) fn failed(coordinates: Vec<f64>, error: &Error) -> Self {
+        Row {
+            coordinates,
+            status: error.to_string(),
+            ..Row::default()
+        }
+    }
+
+    /// Its cells: the coordinates, then [`COLUMNS`]; what is missing is empty.
+    pub(super) fn record(&self) -> Vec<String> {
+        let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
+        let mut record: Vec<String> = self.coordinates.iter().map(f64::to_string).collect();
+        for (pair, error) in [(self.c0, self.c0_error), (self.c2, self.c2_error)] {
+            record.push(number(pair.map(|p| p[0])));
+            record.push(number(pair.map(|p| p[1])));
+            record.push(number(error));
+        }
+        record.push(number(self.amplitude));
+        record.push(self.bifurcation.clone());
+        record.push(number(self.mean_flow));
+        record.push(number(self.second_harmonic));
+        record.push(self.status.clone());
+        record
+    }
+}
