@@ -1,5 +1,5 @@
-//! Do error bars hold? Random parameters, each answer against an exact value or one of another resolution: the
-//! slow profile, `cargo test --workspace -- --ignored`.
+//! Do error bars hold, and does what has no answer end? Random parameters, each answer against an exact value or one
+//! of another resolution: the slow profile, `cargo test --workspace -- --ignored`.
 
 use crate::support::built;
 use landau_solver::model::C64;
@@ -189,4 +189,19 @@ fn error_bars_hold() {
         outside * 100 <= total,
         "{outside} of {total} outside\n{told}"
     );
+}
+
+/// A bed far from any that the model has: refused by name, and not after minutes.
+#[test]
+#[ignore = "slow"]
+fn a_base_state_out_of_reach_ends() {
+    let model = built("vibrated_bed");
+    let mut setup = Setup::new(model.as_ref(), 50);
+    let settings = ["F=40", "S=5", "e=0.5", "H=auto"].map(str::to_owned);
+    setup.set(&settings).expect("parameters");
+    let error = setup.base(None).expect_err("none is known there");
+    let told = error.to_string();
+    assert!(told.contains("work allowed"), "{told}");
+    assert!(told.contains("H = auto"), "{told}");
+    assert_eq!(error.status(), 3);
 }

@@ -293,11 +293,14 @@ fn describe(model: &dyn Model, parameters: &Parameters, failure: &Failure, place
     let structure = model.structure();
     let values: Vec<String> = (0..structure.parameters.len())
         .map(|i| {
-            format!(
-                "{} = {}",
-                structure.parameters[i].name,
-                parameters.shown(structure, i)
-            )
+            let (name, value) = (
+                &structure.parameters[i].name,
+                parameters.shown(structure, i),
+            );
+            match parameters.automatic[i] {
+                true => format!("{name} = auto (tried from {value})"),
+                false => format!("{name} = {value}"),
+            }
         })
         .collect();
     Error::computation(format!(

@@ -95,7 +95,7 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
 struct Vortex {
     circulation: f64,
     centre: f64,
-    densest: f64,
+    peak: f64,
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -136,12 +136,12 @@ pub(super) fn circulation(
             &over.name,
             "circulation",
             "vortex centre",
-            "largest density",
+            &format!("largest {shade}"),
         ]);
         for (index, vortex) in &found {
             if index / values.len() == number {
                 let place = values[index % values.len()];
-                let row = vec![place, vortex.circulation, vortex.centre, vortex.densest];
+                let row = vec![place, vortex.circulation, vortex.centre, vortex.peak];
                 table.rows.push(row);
             }
         }
@@ -224,12 +224,12 @@ fn vortex(found: &Pattern, [u, v]: [usize; 2], shade: usize, side: f64) -> Resul
     Ok(Vortex {
         circulation: circulation.abs(),
         centre: cy,
-        densest: densest(&largest, y),
+        peak: peak(&largest, y),
     })
 }
 
 /// The height of the largest of a field's values.
-fn densest(largest: &[f64], y: &[f64]) -> f64 {
+fn peak(largest: &[f64], y: &[f64]) -> f64 {
     let highest = largest.iter().zip(y).max_by(|a, b| a.0.total_cmp(b.0));
     let on_grid = highest.map_or(f64::NAN, |(_, y)| *y);
     crest(largest, y).map_or(on_grid, |[place, _]| place)
