@@ -12,7 +12,8 @@ use faer::{Mat, MatRef};
 const MOST_DEFLATIONS: usize = 6;
 /// Singular directions of M0 after deflation, relative to its largest.
 const RANK: f64 = 1e-11;
-/// An equation of no larger terms, relative to the largest of all, says nothing.
+/// A hidden equation of no larger terms, relative to the largest of the rows with mass that it comes from, says
+/// nothing.
 const NOISE: f64 = 1e-15;
 /// Rounds in which rows and columns are brought to comparable size.
 const BALANCING: usize = 3;
@@ -41,7 +42,14 @@ impl<T: Scalar> Reduced<T> {
     pub fn new((mut operator, mut mass): (Mat<T>, Mat<T>)) -> Result<Self> {
         let mut basis = balance(&mut operator, &mut mass);
         // Against the whole, not against what is left of it: the last thing left may be noise.
-        let (terms, masses) = (largest(&operator), largest(&mass));
+        let with_mass =
+            (0..mass.nrows()).filter(|&row| largest_of_row(&mass, row) > f64::MIN_POSITIVE);
+        let terms = with_mass
+            .map(|row| largest_of_row(&operator, row))
+            .fold(0.0, f64::max);
+        let masses = largest(&mass);
+        // Conditions and constraints as they were given have units of their own, and no noise.
+        let mut noise = 0.0;
         for _ in 0..2 * MOST_DEFLATIONS {
             let size = operator.nrows();
             let zero = |i: &usize| (0..size).all(|j| mass[(*i, j)].size() == 0.0);
@@ -59,9 +67,10 @@ impl<T: Scalar> Reduced<T> {
                         basis,
                     });
                 }
+                noise = NOISE * terms;
                 continue;
             }
-            let null = null_space(&operator, &algebraic, terms)?;
+            let null = null_space(&operator, &algebraic, noise)?;
             let rows = |m: &Mat<T>| Mat::from_fn(dynamic.len(), size, |i, j| m[(dynamic[i], j)]);
             operator = rows(&operator) * &null;
             mass = rows(&mass) * &null;
@@ -231,11 +240,11 @@ fn expose<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>, masses: f64) -> b
 
 /// The x for which the algebraic rows vanish: the last columns of Q of their adjoint, each row scaled first
 /// so that no equation outweighs another.
-fn null_space<T: Scalar>(operator: &Mat<T>, algebraic: &[usize], terms: f64) -> Result<Mat<T>> {
+fn null_space<T: Scalar>(operator: &Mat<T>, algebraic: &[usize], noise: f64) -> Result<Mat<T>> {
     let size = operator.ncols();
-    let noise = algebraic
+    let nothing = algebraic
         .iter()
-        .any(|&row| largest_of_row(operator, row) <= NOISE * terms);
+        .any(|&row| largest_of_row(operator, row) <= noise);
     let constraints = Mat::from_fn(size, algebraic.len(), |j, a| {
         let row = algebraic[a];
         operator[(row, j)]
@@ -246,7 +255,7 @@ fn null_space<T: Scalar>(operator: &Mat<T>, algebraic: &[usize], terms: f64) -> 
     let r = qr.thin_R();
     let count = algebraic.len();
     let largest = r[(0, 0)].size();
-    if noise || (0..count).any(|i| r[(i, i)].size() <= RANK * largest) {
+    if nothing || (0..count).any(|i| r[(i, i)].size() <= RANK * largest) {
         return Err(Error::computation(
             "the linear problem is singular for every growth rate: a field is determined up to \
              something arbitrary; name it as `gauge` in the block `mean`, or check the balances",
@@ -317,6 +326,12 @@ mod tests {
             let operator = mat![[-unit, 0.0], [0.5 * unit, 2.0 * unit]];
             let found = values(operator, Mat::identity(2, 2)).expect("a spectrum");
             assert!((found[0] / unit - 2.0).abs() < 1e-12 && (found[1] / unit + 1.0).abs() < 1e-12);
+        }
+        // A condition has no unit of time: x' = −x + y, 0 = x − 2y again.
+        for unit in [1e-18, 1e18] {
+            let operator = mat![[-unit, unit], [1.0, -2.0]];
+            let found = values(operator, mat![[1.0, 0.0], [0.0, 0.0]]).expect("a spectrum");
+            assert!((found[0] / unit + 0.5).abs() < 1e-12, "{found:?}");
         }
     }
 }
