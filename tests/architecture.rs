@@ -89,18 +89,28 @@ fn all(folders: &[&str]) -> Vec<(PathBuf, String)> {
 
 #[test]
 fn no_model_is_known_outside_specs_and_tests() {
-    let names: Vec<String> = landau_spec::models()
-        .iter()
-        .map(|m| m.structure().name.clone())
-        .collect();
+    // Names, and the words in them that belong to no other science.
+    let models = landau_spec::models();
+    let words = [
+        "granular",
+        "bed",
+        "poiseuille",
+        "couette",
+        "brusselator",
+        "hohenberg",
+        "sivashinsky",
+        "benard",
+    ];
+    let names: Vec<&str> = models.iter().map(|m| m.structure().name.as_str()).collect();
     for (path, text) in all(&["codegen", "solver"]) {
         for name in &names {
-            assert!(
-                !text.contains(name.as_str()),
-                "{} names {name}",
-                path.display()
-            );
+            assert!(!text.contains(name), "{} names {name}", path.display());
         }
+        let text = text.to_lowercase();
+        let known = text
+            .split(|c: char| !c.is_alphabetic())
+            .find(|word| words.contains(word));
+        assert_eq!(known, None, "{}", path.display());
     }
 }
 

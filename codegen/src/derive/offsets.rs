@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn granular_bed() {
+    fn density_velocity_and_temperature() {
         // mass, momenta, energy; fields n, u, v, T
         let orders = [
             vec![Some(0), Some(0), Some(1), None],

@@ -77,15 +77,7 @@ pub fn direct(
             ClosureKind::Unknown => closures.unknown_column(layout, info.field),
             _ => closures.column(layout, &info.column, |xi| closures.at(index, xi).column),
         };
-        Border {
-            kind: info.kind,
-            closure: index,
-            name: closures.name(info),
-            field: info.field,
-            row,
-            column,
-            unit: 1.0,
-        }
+        closures.border(index, info, row, column)
     };
     infos.map(border).collect()
 }
@@ -128,15 +120,7 @@ pub fn adjoint(
                 closures.at(index, xi).column
             }),
         };
-        Ok(Border {
-            kind: info.kind,
-            closure: index,
-            name: closures.name(info),
-            field: info.field,
-            row,
-            column,
-            unit: 1.0,
-        })
+        Ok(closures.border(index, info, row, column))
     };
     infos.map(border).collect()
 }
@@ -148,6 +132,19 @@ fn values(columns: &[usize]) -> Vec<Jet> {
 impl Closures<'_> {
     fn infos(&self) -> &[ClosureInfo] {
         &self.model.structure().cases[self.base.case].closures
+    }
+
+    /// The border of a closure before it is balanced against the equations.
+    fn border(&self, index: usize, info: &ClosureInfo, row: Vec<f64>, column: Vec<f64>) -> Border {
+        Border {
+            kind: info.kind,
+            closure: index,
+            name: self.name(info),
+            field: info.field,
+            row,
+            column,
+            unit: 1.0,
+        }
     }
 
     fn name(&self, info: &ClosureInfo) -> String {
