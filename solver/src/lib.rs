@@ -32,6 +32,7 @@ pub mod file;
 pub mod parameters;
 pub mod pencil;
 pub mod problem;
+pub mod series;
 pub mod spectrum;
 pub mod study;
 pub mod weakly;

@@ -16,7 +16,6 @@ fn warm(criterion: &mut Criterion, name: &str, model: &dyn Model) {
     let problem = Problem::new(model, &base, &discretisation, 50).expect("a problem");
     let near = point(&problem, 0.16, Selection::Leading)
         .expect("a point")
-        .expansion
         .pair;
     criterion.bench_function(name, |b| {
         b.iter(|| warm_point(&problem, 0.161, &near).expect("a point").c2)

@@ -1,8 +1,11 @@
-//! Straight-line programs with common subexpressions shared: what the Rust emitter prints and what the tape runs,
-//! the same operations in the same order.
+//! Straight-line programs with common subexpressions shared, as data: what the Rust emitter prints, what the tape
+//! runs, and what the solver runs on numbers of its own, the same operations in the same order.
 
 use crate::jet::Function;
+use crate::model::choose;
+use crate::number::Number;
 use crate::structure::{KernelId, ResidualId, Structure};
+use std::borrow::Cow;
 
 /// A value computed earlier in the kernel.
 pub type Register = usize;
@@ -25,7 +28,7 @@ pub enum Operation {
     PowerF(Register, f64),
     Call(Function, Register),
     /// One of the registers, by the value of a (switch) register.
-    Select(Register, Vec<Register>),
+    Select(Register, Cow<'static, [Register]>),
 }
 
 /// An input array of a kernel.
@@ -36,14 +39,12 @@ pub struct Array {
     pub real: bool,
 }
 
-/// A straight-line program.
+/// A straight-line program; a constant of emitted code, or made at run time.
 #[derive(Clone, Debug)]
 pub struct Kernel {
-    pub inputs: Vec<Array>,
-    pub operations: Vec<Operation>,
-    /// Whether each register is real whatever the number type.
-    pub real: Vec<bool>,
-    pub outputs: Vec<Register>,
+    pub inputs: Cow<'static, [Array]>,
+    pub operations: Cow<'static, [Operation]>,
+    pub outputs: Cow<'static, [Register]>,
     /// Arithmetic operations of the expressions as written, nothing shared.
     pub unshared: usize,
 }
@@ -53,6 +54,81 @@ impl Kernel {
     pub fn shared(&self) -> usize {
         let free = |op: &&Operation| matches!(op, Operation::Constant(_) | Operation::Input(..));
         self.operations.iter().filter(|op| !free(op)).count()
+    }
+
+    /// Whether each register is real whatever the number type: made of constants and real inputs alone.
+    pub fn real(&self) -> Vec<bool> {
+        let mut real: Vec<bool> = Vec::with_capacity(self.operations.len());
+        for operation in self.operations.iter() {
+            let own = match operation {
+                Operation::Constant(_) => true,
+                Operation::Input(array, _) => self.inputs[*array].real,
+                Operation::Add(a, b)
+                | Operation::Subtract(a, b)
+                | Operation::Multiply(a, b)
+                | Operation::Divide(a, b) => real[*a] && real[*b],
+                Operation::Negate(a)
+                | Operation::Sqrt(a)
+                | Operation::PowerI(a, _)
+                | Operation::PowerF(a, _)
+                | Operation::Call(_, a) => real[*a],
+                Operation::Select(_, branches) => branches.iter().all(|&b| real[b]),
+            };
+            real.push(own);
+        }
+        real
+    }
+
+    /// Runs the program: `input(array, position)` gives the leaves, `registers` is filled anew.
+    pub fn run<T: Number>(&self, input: impl Fn(usize, usize) -> T, registers: &mut Vec<T>) {
+        let r = registers;
+        r.clear();
+        for operation in self.operations.iter() {
+            let value = match operation {
+                Operation::Constant(value) => T::from(*value),
+                Operation::Input(array, position) => input(*array, *position),
+                Operation::Add(a, b) => r[*a] + r[*b],
+                Operation::Subtract(a, b) => r[*a] - r[*b],
+                Operation::Multiply(a, b) => r[*a] * r[*b],
+                Operation::Divide(a, b) => r[*a] / r[*b],
+                Operation::Negate(a) => -r[*a],
+                Operation::Sqrt(a) => r[*a].sqrt(),
+                Operation::PowerI(a, exponent) => r[*a].powi(*exponent),
+                Operation::PowerF(a, exponent) => r[*a].powf(*exponent),
+                Operation::Call(function, a) => apply(*function, r[*a]),
+                Operation::Select(switch, branches) => {
+                    let branches: Vec<T> = branches.iter().map(|&b| r[b]).collect();
+                    choose(r[*switch].real_part(), &branches)
+                }
+            };
+            r.push(value);
+        }
+    }
+
+    /// The outputs at one point: `point` and `jets` are the two input arrays of a residual.
+    pub fn evaluate<T: Number>(&self, point: &[f64], jets: &[T]) -> Vec<T> {
+        let mut registers = Vec::with_capacity(self.operations.len());
+        let input = |array: usize, i: usize| match array {
+            0 => T::from(point[i]),
+            _ => jets[i],
+        };
+        self.run(input, &mut registers);
+        self.outputs.iter().map(|&o| registers[o]).collect()
+    }
+}
+
+/// A function of the spec language.
+pub fn apply<T: Number>(function: Function, x: T) -> T {
+    match function {
+        Function::Exp => x.exp(),
+        Function::Log => x.log(),
+        Function::Sin => x.sin(),
+        Function::Cos => x.cos(),
+        Function::Tan => x.tan(),
+        Function::Sinh => x.sinh(),
+        Function::Cosh => x.cosh(),
+        Function::Tanh => x.tanh(),
+        Function::Atan => x.atan(),
     }
 }
 

@@ -13,10 +13,10 @@ mod structure;
 mod tape;
 
 pub use jet::{End, Function, Jet, Operator, jet};
-pub use kernel::{Array, Kernel, ModelKernels, Operation, Register};
-pub use model::{Model, ResidualCall, choose, evaluate, output_length};
+pub use kernel::{Array, Kernel, ModelKernels, Operation, Register, apply};
+pub use model::{Model, choose, evaluate, output_length};
 pub use nearest::nearest;
-pub use number::{C64, Number, SERIES_LENGTH, Series, Truncated};
+pub use number::{C64, Number};
 pub use rounding::WithRounding;
 pub use structure::*;
 pub use tape::TapeModel;

@@ -3,19 +3,9 @@
 //! Generated code and a model run from its tape implement the same object-safe trait; nothing below
 //! this module knows where the kernels come from, or which model they belong to.
 
-use crate::number::{C64, Series};
-use crate::rounding::WithRounding;
+use crate::kernel::Kernel;
+use crate::number::C64;
 use crate::structure::{BaseJet, KernelId, ResidualId, Structure};
-
-/// A residual call for one of the number types of the closed list: inputs are the jets of
-/// [`Structure::residual_jets`], outputs one value a balance or condition.
-pub enum ResidualCall<'a> {
-    Real(&'a [f64], &'a mut [f64]),
-    /// With a bound of the rounding errors.
-    Rounding(&'a [WithRounding], &'a mut [WithRounding]),
-    /// Truncated power series with complex coefficients.
-    Series(&'a [Series], &'a mut [Series]),
-}
 
 /// The interface between a model and the solver.
 ///
@@ -37,8 +27,10 @@ pub trait Model: Send + Sync {
     /// [`KernelId::Nonlinear`], `x` one slice of [`Structure::form_jets`] an argument.
     fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64;
 
-    /// The unexpanded residual M ∂t X − R (not divided), or left − right of the conditions.
-    fn residual(&self, residual: ResidualId, point: &[f64], call: ResidualCall<'_>);
+    /// The unexpanded residual M ∂t X − R (not divided), or left − right of the conditions, as a program for
+    /// numbers of any kind: its inputs are the point state and the jets of [`Structure::residual_jets`], its outputs
+    /// one value a balance or condition. Nothing where there are no conditions.
+    fn residual(&self, residual: ResidualId) -> Option<&Kernel>;
 }
 
 /// Number of outputs of a real kernel.

@@ -1,9 +1,8 @@
 //! A model run from its spec without a build: the kernels' operations, interpreted.
 
-use crate::jet::Function;
-use crate::kernel::{Kernel, ModelKernels, Operation};
-use crate::model::{Model, ResidualCall, choose};
-use crate::number::{C64, Number};
+use crate::kernel::{Kernel, ModelKernels};
+use crate::model::Model;
+use crate::number::C64;
 use crate::structure::{KernelId, ResidualId, Structure};
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -61,7 +60,7 @@ impl Model for TapeModel {
         let Some(kernel) = self.kernels.get(&kernel) else {
             return out.fill(0.0);
         };
-        REGISTERS.with_borrow_mut(|registers| run(kernel, |_, i| point[i], registers));
+        REGISTERS.with_borrow_mut(|registers| kernel.run(|_, i| point[i], registers));
         REGISTERS.with_borrow(|registers| copy_outputs(kernel, registers, out));
     }
 
@@ -75,74 +74,18 @@ impl Model for TapeModel {
                 0 => C64::from(c[i]),
                 _ => x[array - 1][i],
             };
-            run(kernel, input, registers);
+            kernel.run(input, registers);
             registers[kernel.outputs[0]]
         })
     }
 
-    fn residual(&self, residual: ResidualId, point: &[f64], call: ResidualCall<'_>) {
-        let Some(kernel) = self.residuals.get(&residual) else {
-            return;
-        };
-        match call {
-            ResidualCall::Real(x, out) => run_residual(kernel, point, x, out),
-            ResidualCall::Rounding(x, out) => run_residual(kernel, point, x, out),
-            ResidualCall::Series(x, out) => run_residual(kernel, point, x, out),
-        }
+    fn residual(&self, residual: ResidualId) -> Option<&Kernel> {
+        self.residuals.get(&residual)
     }
-}
-
-fn run_residual<T: Number>(kernel: &Kernel, point: &[f64], x: &[T], out: &mut [T]) {
-    let mut registers = Vec::new();
-    let input = |array: usize, i: usize| if array == 0 { T::from(point[i]) } else { x[i] };
-    run(kernel, input, &mut registers);
-    copy_outputs(kernel, &registers, out);
 }
 
 fn copy_outputs<T: Copy>(kernel: &Kernel, registers: &[T], out: &mut [T]) {
-    for (value, &register) in out.iter_mut().zip(&kernel.outputs) {
+    for (value, &register) in out.iter_mut().zip(kernel.outputs.iter()) {
         *value = registers[register];
-    }
-}
-
-fn run<T: Number>(kernel: &Kernel, input: impl Fn(usize, usize) -> T, r: &mut Vec<T>) {
-    r.clear();
-    for operation in &kernel.operations {
-        let value = match operation {
-            Operation::Constant(value) => T::from(*value),
-            Operation::Input(array, position) => input(*array, *position),
-            Operation::Add(a, b) => r[*a] + r[*b],
-            Operation::Subtract(a, b) => r[*a] - r[*b],
-            Operation::Multiply(a, b) => r[*a] * r[*b],
-            Operation::Divide(a, b) => r[*a] / r[*b],
-            Operation::Negate(a) => -r[*a],
-            Operation::Sqrt(a) => r[*a].sqrt(),
-            Operation::PowerI(a, exponent) => r[*a].powi(*exponent),
-            Operation::PowerF(a, exponent) => r[*a].powf(*exponent),
-            Operation::Call(function, a) => apply(*function, r[*a]),
-            Operation::Select(switch, branches) => {
-                let Operation::Input(array, position) = kernel.operations[*switch] else {
-                    unreachable!("a switch is a parameter")
-                };
-                let switch = input(array, position);
-                let branches: Vec<T> = branches.iter().map(|&b| r[b]).collect();
-                choose(switch.real_part(), &branches)
-            }
-        };
-        r.push(value);
-    }
-}
-
-fn apply<T: Number>(function: Function, x: T) -> T {
-    match function {
-        Function::Exp => x.exp(),
-        Function::Log => x.log(),
-        Function::Sin => x.sin(),
-        Function::Cos => x.cos(),
-        Function::Tan => x.tan(),
-        Function::Sinh => x.sinh(),
-        Function::Cosh => x.cosh(),
-        Function::Tanh => x.tanh(),
-        Function::Atan => x.atan(),
     }
 }

@@ -160,3 +160,80 @@ impl Literal for ClosureKind {
         }
     }
 }
+
+/// A slice of a constant.
+fn borrowed<T: Literal>(items: &[T]) -> TokenStream {
+    let items = items.iter().map(Literal::literal);
+    quote!(Cow::Borrowed(&[#(#items),*]))
+}
+
+impl Literal for Kernel {
+    fn literal(&self) -> TokenStream {
+        let inputs = borrowed(&self.inputs);
+        let operations = borrowed(&self.operations);
+        let outputs = borrowed(&self.outputs);
+        let unshared = self.unshared.literal();
+        quote!(s::Kernel {
+            inputs: #inputs,
+            operations: #operations,
+            outputs: #outputs,
+            unshared: #unshared,
+        })
+    }
+}
+
+impl Literal for Array {
+    fn literal(&self) -> TokenStream {
+        let Array { name, real } = self;
+        quote!(s::Array { name: #name, real: #real })
+    }
+}
+
+impl Literal for Operation {
+    fn literal(&self) -> TokenStream {
+        let name = match self {
+            Operation::Constant(_) => "Constant",
+            Operation::Input(..) => "Input",
+            Operation::Add(..) => "Add",
+            Operation::Subtract(..) => "Subtract",
+            Operation::Multiply(..) => "Multiply",
+            Operation::Divide(..) => "Divide",
+            Operation::Negate(_) => "Negate",
+            Operation::Sqrt(_) => "Sqrt",
+            Operation::PowerI(..) => "PowerI",
+            Operation::PowerF(..) => "PowerF",
+            Operation::Call(..) => "Call",
+            Operation::Select(..) => "Select",
+        };
+        let name = quote::format_ident!("{name}");
+        let operands = match self {
+            Operation::Constant(value) => value.literal(),
+            Operation::Negate(a) | Operation::Sqrt(a) => a.literal(),
+            Operation::Input(a, b)
+            | Operation::Add(a, b)
+            | Operation::Subtract(a, b)
+            | Operation::Multiply(a, b)
+            | Operation::Divide(a, b) => {
+                let (a, b) = (a.literal(), b.literal());
+                quote!(#a, #b)
+            }
+            Operation::PowerI(a, exponent) => {
+                let (a, exponent) = (a.literal(), proc_macro2::Literal::i32_unsuffixed(*exponent));
+                quote!(#a, #exponent)
+            }
+            Operation::PowerF(a, exponent) => {
+                let (a, exponent) = (a.literal(), exponent.literal());
+                quote!(#a, #exponent)
+            }
+            Operation::Call(function, a) => {
+                let (function, a) = (quote::format_ident!("{function:?}"), a.literal());
+                quote!(s::Function::#function, #a)
+            }
+            Operation::Select(switch, branches) => {
+                let (switch, branches) = (switch.literal(), borrowed(branches));
+                quote!(#switch, #branches)
+            }
+        };
+        quote!(s::Operation::#name(#operands))
+    }
+}

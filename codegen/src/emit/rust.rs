@@ -40,12 +40,8 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
     let mut residuals = TokenStream::new();
     for (id, kernel) in &model.residuals {
         let (name, pattern) = residual_name(*id);
-        functions.extend(residual_function(&name, kernel));
-        residuals.extend(quote!(s::ResidualId::#pattern => match call {
-            s::ResidualCall::Real(x, out) => #name(point, x, out),
-            s::ResidualCall::Rounding(x, out) => #name(point, x, out),
-            s::ResidualCall::Series(x, out) => #name(point, x, out),
-        },));
+        functions.extend(residual_program(&name, kernel));
+        residuals.extend(quote!(s::ResidualId::#pattern => Some(&#name),));
     }
     let sources = derivation.model.sources.iter().map(|file| {
         let (path, text) = (&file.path, &file.text);
@@ -53,7 +49,8 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
     });
     let code = quote! {
         use landau_contract as s;
-        use s::{C64, Number};
+        use s::C64;
+        use std::borrow::Cow;
 
         /// The generated operators, for the solver.
         pub struct Generated {
@@ -101,10 +98,10 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
                 }
             }
 
-            fn residual(&self, residual: s::ResidualId, point: &[f64], call: s::ResidualCall<'_>) {
+            fn residual(&self, residual: s::ResidualId) -> Option<&s::Kernel> {
                 match residual {
                     #residuals
-                    _ => {}
+                    _ => None,
                 }
             }
         }
@@ -175,13 +172,13 @@ fn kernel_pattern(id: KernelId) -> TokenStream {
 
 fn residual_name(id: ResidualId) -> (Ident, TokenStream) {
     match id {
-        ResidualId::Balances => (format_ident!("residual_balances"), quote!(Balances)),
+        ResidualId::Balances => (format_ident!("RESIDUAL_BALANCES"), quote!(Balances)),
         ResidualId::Conditions(case) => (
-            format_ident!("residual_conditions_{case}"),
+            format_ident!("RESIDUAL_CONDITIONS_{case}"),
             quote!(Conditions(#case)),
         ),
         ResidualId::BaseChecks(case) => (
-            format_ident!("residual_base_checks_{case}"),
+            format_ident!("RESIDUAL_BASE_CHECKS_{case}"),
             quote!(BaseChecks(#case)),
         ),
     }
@@ -190,7 +187,7 @@ fn residual_name(id: ResidualId) -> (Ident, TokenStream) {
 /// `fn name(p, out)`: `p` is the point state.
 fn real_function(name: &Ident, kernel: &Kernel) -> TokenStream {
     let body = body(kernel);
-    let outputs = outputs(kernel, false);
+    let outputs = outputs(kernel);
     let doc = counts(kernel);
     let unused = unused_inputs(kernel);
     quote! {
@@ -229,19 +226,13 @@ fn form_function(
     }
 }
 
-/// `fn name<T>(p, x, out)`: parameters, then the jets of the full state.
-fn residual_function(name: &Ident, kernel: &Kernel) -> TokenStream {
-    let body = body(kernel);
-    let outputs = outputs(kernel, true);
+/// A program over the point state and the jets of the full state, as data: the solver runs it on numbers of its own.
+fn residual_program(name: &Ident, kernel: &Kernel) -> TokenStream {
     let doc = counts(kernel);
-    let unused = unused_inputs(kernel);
+    let kernel = kernel.literal();
     quote! {
         #[doc = #doc]
-        fn #name<T: Number>(p: &[f64], x: &[T], out: &mut [T]) {
-            #unused
-            #body
-            #outputs
-        }
+        static #name: s::Kernel = #kernel;
     }
 }
 
@@ -278,16 +269,11 @@ fn register(index: usize) -> Ident {
     format_ident!("t{index}")
 }
 
-fn outputs(kernel: &Kernel, generic: bool) -> TokenStream {
+fn outputs(kernel: &Kernel) -> TokenStream {
     let mut tokens = TokenStream::new();
     for (index, &value) in kernel.outputs.iter().enumerate() {
         let index = proc_macro2::Literal::usize_unsuffixed(index);
-        let name = register(value);
-        let value = if generic && kernel.real[value] {
-            quote!(T::from(#name))
-        } else {
-            quote!(#name)
-        };
+        let value = register(value);
         tokens.extend(quote!(out[#index] = #value;));
     }
     tokens
@@ -297,17 +283,18 @@ fn outputs(kernel: &Kernel, generic: bool) -> TokenStream {
 /// the number type on the left.
 fn body(kernel: &Kernel) -> TokenStream {
     let mut tokens = TokenStream::new();
+    let real = kernel.real();
     for (index, operation) in kernel.operations.iter().enumerate() {
         let name = register(index);
-        let value = expression(kernel, operation);
+        let value = expression(kernel, &real, operation);
         let annotation = matches!(operation, Operation::Constant(_)).then(|| quote!(: f64));
         tokens.extend(quote!(let #name #annotation = #value;));
     }
     tokens
 }
 
-fn expression(kernel: &Kernel, operation: &Operation) -> TokenStream {
-    let real = |r: usize| kernel.real[r];
+fn expression(kernel: &Kernel, real: &[bool], operation: &Operation) -> TokenStream {
+    let real = |r: usize| real[r];
     let mixed = |a: usize, b: usize| real(a) && !real(b);
     match operation {
         Operation::Constant(value) => value.literal(),
@@ -337,7 +324,7 @@ fn expression(kernel: &Kernel, operation: &Operation) -> TokenStream {
         Operation::Divide(a, b) => {
             let (x, y) = (register(*a), register(*b));
             if mixed(*a, *b) {
-                quote!(Number::recip(#y) * #x)
+                quote!(s::Number::recip(#y) * #x)
             } else {
                 quote!(#x / #y)
             }
@@ -348,34 +335,26 @@ fn expression(kernel: &Kernel, operation: &Operation) -> TokenStream {
         }
         Operation::Sqrt(a) => {
             let x = register(*a);
-            quote!(Number::sqrt(#x))
+            quote!(s::Number::sqrt(#x))
         }
         Operation::PowerI(a, exponent) => {
             let (x, exponent) = (
                 register(*a),
                 proc_macro2::Literal::i32_unsuffixed(*exponent),
             );
-            quote!(Number::powi(#x, #exponent))
+            quote!(s::Number::powi(#x, #exponent))
         }
         Operation::PowerF(a, exponent) => {
             let (x, exponent) = (register(*a), exponent.literal());
-            quote!(Number::powf(#x, #exponent))
+            quote!(s::Number::powf(#x, #exponent))
         }
         Operation::Call(function, a) => {
             let (x, name) = (register(*a), format_ident!("{}", function.name()));
-            quote!(Number::#name(#x))
+            quote!(s::Number::#name(#x))
         }
         Operation::Select(switch, branches) => {
             let switch = register(*switch);
-            let whole = branches.iter().all(|&b| real(b));
-            let branches = branches.iter().map(|&b| {
-                let name = register(b);
-                if real(b) && !whole {
-                    quote!(T::from(#name))
-                } else {
-                    quote!(#name)
-                }
-            });
+            let branches = branches.iter().map(|&b| register(b));
             quote!(s::choose(#switch, &[#(#branches),*]))
         }
     }

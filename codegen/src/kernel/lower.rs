@@ -16,7 +16,6 @@ struct Builder<'a> {
     graph: &'a Graph,
     lowering: Lowering<'a>,
     operations: Vec<Operation>,
-    real: Vec<bool>,
     /// Equal operations are one register.
     known: HashMap<String, Register>,
     values: HashMap<Id, Register>,
@@ -29,7 +28,6 @@ impl Lowering<'_> {
             graph,
             lowering: self,
             operations: Vec::new(),
-            real: Vec::new(),
             known: HashMap::new(),
             values: HashMap::new(),
         };
@@ -47,10 +45,9 @@ impl Lowering<'_> {
             .fold(0, usize::saturating_add);
         let outputs: Vec<Register> = outputs.iter().map(|id| builder.values[id]).collect();
         let mut kernel = Kernel {
-            inputs: builder.lowering.inputs,
-            operations: builder.operations,
-            real: builder.real,
-            outputs,
+            inputs: builder.lowering.inputs.into(),
+            operations: builder.operations.into(),
+            outputs: outputs.into(),
             unshared,
         };
         drop_unused(&mut kernel);
@@ -83,23 +80,8 @@ impl Builder<'_> {
         if let Some(&known) = self.known.get(&key) {
             return known;
         }
-        let real = match &operation {
-            Operation::Constant(_) => true,
-            Operation::Input(array, _) => self.lowering.inputs[*array].real,
-            Operation::Add(a, b)
-            | Operation::Subtract(a, b)
-            | Operation::Multiply(a, b)
-            | Operation::Divide(a, b) => self.real[*a] && self.real[*b],
-            Operation::Negate(a)
-            | Operation::Sqrt(a)
-            | Operation::PowerI(a, _)
-            | Operation::PowerF(a, _)
-            | Operation::Call(_, a) => self.real[*a],
-            Operation::Select(_, branches) => branches.iter().all(|&b| self.real[b]),
-        };
         let register = self.operations.len();
         self.operations.push(operation);
-        self.real.push(real);
         self.known.insert(key, register);
         register
     }
@@ -120,8 +102,8 @@ impl Builder<'_> {
             }
             Node::Select(switch, branches) => {
                 let switch = self.leaf(&Node::Parameter(switch));
-                let branches = branches.iter().map(|b| self.values[b]).collect();
-                self.push(Operation::Select(switch, branches))
+                let branches: Vec<Register> = branches.iter().map(|b| self.values[b]).collect();
+                self.push(Operation::Select(switch, branches.into()))
             }
             leaf => self.leaf(&leaf),
         }
@@ -230,7 +212,7 @@ impl Builder<'_> {
 fn drop_unused(kernel: &mut Kernel) {
     let count = kernel.operations.len();
     let mut needed = vec![false; count];
-    for &output in &kernel.outputs {
+    for &output in kernel.outputs.iter() {
         needed[output] = true;
     }
     for register in (0..count).rev() {
@@ -247,17 +229,12 @@ fn drop_unused(kernel: &mut Kernel) {
         next += usize::from(needed[register]);
     }
     let mut register = 0..count;
-    kernel
-        .operations
-        .retain(|_| register.next().is_some_and(|r| needed[r]));
-    let mut register = 0..count;
-    kernel
-        .real
-        .retain(|_| register.next().is_some_and(|r| needed[r]));
-    for operation in &mut kernel.operations {
+    let operations = kernel.operations.to_mut();
+    operations.retain(|_| register.next().is_some_and(|r| needed[r]));
+    for operation in operations {
         rename(operation, &moved);
     }
-    for output in &mut kernel.outputs {
+    for output in kernel.outputs.to_mut() {
         *output = moved[*output];
     }
 }
@@ -301,7 +278,7 @@ fn rename(operation: &mut Operation, moved: &[Register]) {
         | Operation::Call(_, a) => *a = moved[*a],
         Operation::Select(switch, branches) => {
             *switch = moved[*switch];
-            branches.iter_mut().for_each(|b| *b = moved[*b]);
+            branches.to_mut().iter_mut().for_each(|b| *b = moved[*b]);
         }
     }
 }

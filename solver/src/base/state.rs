@@ -2,7 +2,7 @@
 
 use crate::collocation::{Stretch, derivative_values};
 use crate::error::{Error, Result};
-use crate::model::{End, KernelId, Model, ResidualCall, ResidualId, WithRounding, evaluate};
+use crate::model::{End, KernelId, Model, ResidualId, WithRounding, evaluate};
 use crate::parameters::Parameters;
 
 /// Places at which a closed base state is checked against its balances.
@@ -48,11 +48,6 @@ impl Leftover {
 /// The unexpanded residuals at the base state, whose jets are as large as `sizes` somewhere.
 fn residual(model: &dyn Model, id: ResidualId, point: &[f64], sizes: &[f64]) -> Vec<WithRounding> {
     let structure = model.structure();
-    let count = match id {
-        ResidualId::Balances => structure.balances.len(),
-        ResidualId::Conditions(case) => structure.cases[case].conditions.len(),
-        ResidualId::BaseChecks(case) => structure.cases[case].base_checks.len(),
-    };
     let jets = structure.residual_jets.iter().zip(sizes);
     let jets: Vec<WithRounding> = jets
         .map(|(jet, &size)| {
@@ -61,9 +56,8 @@ fn residual(model: &dyn Model, id: ResidualId, point: &[f64], sizes: &[f64]) -> 
             WithRounding { value, size }
         })
         .collect();
-    let mut values = vec![WithRounding::from(0.0); count];
-    model.residual(id, point, ResidualCall::Rounding(&jets, &mut values));
-    values
+    let kernel = model.residual(id);
+    kernel.map_or_else(Vec::new, |kernel| kernel.evaluate(point, &jets))
 }
 
 /// X⁰(y), evaluated to any derivative that kernels ask for.

@@ -208,6 +208,18 @@ impl<'m> Problem<'m> {
         values
     }
 
+    /// Physical values in the solver's basis.
+    pub fn solver_basis(&self, values: &[C64]) -> Vec<C64> {
+        let mut turned = values.to_vec();
+        let turns = self.direct.column_turns.iter();
+        for (block, &turn) in self.direct.layout.columns.iter().zip(turns) {
+            for value in &mut turned[block.offset..block.offset + block.len] {
+                *value *= quarter_turn(4 - turn);
+            }
+        }
+        turned
+    }
+
     /// The rate at which the balance of slowest terms changes its field: Σ |coefficient| |k|^a (2/h)^d over the
     /// mass, a median over the points.
     pub fn rate(&self, k: f64) -> f64 {

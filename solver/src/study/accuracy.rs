@@ -58,11 +58,11 @@ pub struct Resonance {
 pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Accuracy> {
     let [c0, c2] = point.rounding();
     let mut found = Accuracy { c0, c2 };
-    let k = point.expansion.k;
-    let problem = point.expansion.problem;
+    let k = point.k();
+    let problem = point.problem;
     let missing = (C64::new(f64::INFINITY, 0.0), C64::new(f64::INFINITY, 0.0));
     // |dc/dk| k ε, wherever c2 is sensitive, near a resonance too.
-    let nudged = spectrum::follow(problem, k * (1.0 + NUDGE), &point.expansion.pair)
+    let nudged = spectrum::follow(problem, k * (1.0 + NUDGE), &point.pair)
         .and_then(|pair| weakly::from_pair(problem, pair))
         .map_or(missing, |p| (p.c0, p.c2));
     found.widen(ROUNDINGS * f64::EPSILON / NUDGE, point, nudged);
@@ -78,7 +78,7 @@ pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<
         found.widen(SAFETY, point, same);
     }
     // Without adjoint conditions, or where the adjoint mode hides in a cluster, one route remains.
-    if let Ok(adjoint) = adjoint_mode(problem, &point.expansion.pair) {
+    if let Ok(adjoint) = adjoint_mode(problem, &point.pair) {
         found.c0 = found.c0.max((adjoint.c.conj() - point.c0).norm());
         if let Some(c2) = second_landau(point, &adjoint)? {
             found.c2 = found.c2.max((c2 - point.c2).norm());
@@ -95,7 +95,7 @@ pub fn beside(
     resolution: usize,
 ) -> Result<(C64, C64)> {
     let other = Problem::new(setup.model, base, &setup.discretisation, resolution)?;
-    let pair = spectrum::transferred(point.expansion.problem, &point.expansion.pair, &other)?;
+    let pair = spectrum::transferred(point.problem, &point.pair, &other)?;
     let point = weakly::from_pair(&other, pair)?;
     Ok((point.c0, point.c2))
 }
@@ -105,8 +105,8 @@ pub fn beside(
 /// # Errors
 /// Spectra that cannot be computed.
 pub fn resonance(point: &LandauPoint) -> Result<Resonance> {
-    let problem = point.expansion.problem;
-    let second = spectrum::eigenvalues(problem, 2.0 * point.expansion.k)?;
+    let problem = point.problem;
+    let second = spectrum::eigenvalues(problem, 2.0 * point.k())?;
     // A model whose mean modes are all closed by integrals has no mean spectrum to meet.
     let mean_flow = match spectrum::eigenvalues(problem, 0.0) {
         Ok(mean) => mean.distance(C64::new(2.0 * point.c0.re, 0.0)),

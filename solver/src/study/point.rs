@@ -72,7 +72,7 @@ impl PointReport {
             values.push((info.name.clone(), value));
         }
         let mut slopes = Vec::new();
-        for (index, slope) in sensitivity::parameters(setup, base, &point.expansion.pair) {
+        for (index, slope) in sensitivity::parameters(setup, base, &point.pair) {
             let name = structure.parameters[index].name.clone();
             let slope = slope.map_err(|error| {
                 Error::computation(format!("dc0/d{name} cannot be formed: {error}"))
@@ -84,7 +84,7 @@ impl PointReport {
             model: structure.name.clone(),
             title: structure.title.clone(),
             parameters: words::parameters(setup, &base.parameters),
-            k: point.expansion.k,
+            k: point.k(),
             resolution: setup.resolution,
             has_coordinate: structure.coordinate.is_some(),
             c0: point.c0,
@@ -135,8 +135,8 @@ impl PointReport {
 /// What a distance from singularity is small or large against: the slow eigenvalues, or the terms of the slowest
 /// balance where there are too few of them to tell.
 pub fn slow_rate(point: &LandauPoint) -> f64 {
-    let pair = &point.expansion.pair;
-    let rate = point.expansion.problem.rate(pair.k);
+    let pair = &point.pair;
+    let rate = point.problem.rate(pair.k);
     let floor = if rate.is_finite() { rate } else { 0.0 };
     pair.scale.max(pair.c.norm()).max(floor)
 }
@@ -156,7 +156,8 @@ fn check_distances(point: &LandauPoint, resonance: &Resonance) -> Result<()> {
         return Err(Error::computation(format!(
             "the problem for X[2;2] is nearly singular: an eigenvalue at 2k lies {:.1e} from 2 c0, a 2:1 resonance; \
              try a wavenumber beside k = {}",
-            resonance.second_harmonic, point.expansion.k
+            resonance.second_harmonic,
+            point.k()
         )));
     }
     Ok(())
@@ -164,7 +165,7 @@ fn check_distances(point: &LandauPoint, resonance: &Resonance) -> Result<()> {
 
 /// An error of the size of its coefficient is no answer, unless the coefficient is a computed zero.
 fn check_errors(setup: &Setup, point: &LandauPoint, error: &Accuracy) -> Result<()> {
-    let scale = point.expansion.pair.scale;
+    let scale = point.pair.scale;
     let judged = [
         ("c0", error.c0, point.c0.norm(), scale),
         ("c2", error.c2, point.c2.norm(), point.size()),

@@ -76,20 +76,19 @@ fn physical(problem: &LinearProblem, x: &[C64]) -> Vec<C64> {
 /// # Errors
 /// A model without adjoint.
 pub fn second_landau(point: &LandauPoint, adjoint: &AdjointMode) -> Result<Option<C64>> {
-    let problem = point.expansion.problem;
+    let problem = point.problem;
     if problem.direct.walls.iter().any(|w| !w.nonlinear.is_empty()) {
         return Ok(None);
     }
     let layout = &problem.adjoint()?.layout;
     let structure = problem.structure();
-    let k = point.expansion.k;
+    let k = point.k();
     let grid = quadrature_grid(problem);
     let (nodes, weights) = (Grid::new(grid).nodes, quadrature_weights(problem, grid));
-    let modes = &point.expansion.modes;
-    let (first, mean, second) = (&modes[&(1, 1)], &modes[&(0, 2)], &modes[&(2, 2)]);
+    let (first, mean, second) = (&point.fundamental, &point.mean, &point.second);
     let conjugate = first.conjugate();
     let jets = &structure.form_jets;
-    let table = |mode: &Mode| mode.jets(problem, k, jets, grid);
+    let table = |mode: &Mode| mode.jets(problem, jets, grid);
     let (j1, j1c, j0, j2) = (table(first), table(&conjugate), table(mean), table(second));
     let mass: Vec<_> = structure
         .linear
@@ -100,7 +99,7 @@ pub fn second_landau(point: &LandauPoint, adjoint: &AdjointMode) -> Result<Optio
     let mass_jets: Vec<Jet> = mass.iter().map(|(_, t)| Jet { t: 0, ..t.jet }).collect();
     let mass_values: Vec<Vec<C64>> = mass_jets
         .iter()
-        .map(|&jet| first.jet(problem, k, jet, grid))
+        .map(|&jet| first.jet(problem, jet, grid))
         .collect();
     let profiles: Vec<Vec<C64>> = (0..layout.columns.len())
         .map(|row| {

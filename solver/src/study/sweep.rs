@@ -322,7 +322,7 @@ impl<'m> Collocations<'m> {
         let Some(coarser) = &self.coarser else {
             return floor;
         };
-        let beside = spectrum::transferred(&self.own, &point.expansion.pair, coarser)
+        let beside = spectrum::transferred(&self.own, &point.pair, coarser)
             .and_then(|pair| weakly::from_pair(coarser, pair));
         match beside {
             Ok(other) => [
@@ -337,9 +337,8 @@ impl<'m> Collocations<'m> {
 /// The row of a point with its errors and distances.
 fn row(collocations: &Collocations, place: &[f64], point: &LandauPoint) -> Result<Row> {
     let [error0, error2] = collocations.errors(point);
-    let scale = point.expansion.pair.scale.max(point.c0.norm());
-    let distance = |key| point.expansion.distance(key).filter(|d| d.is_finite());
-    let (mean_flow, second_harmonic) = (distance((0, 2)), distance((2, 2)));
+    let scale = point.pair.scale.max(point.c0.norm());
+    let [mean_flow, second_harmonic] = point.distances().map(|d| Some(d).filter(|d| d.is_finite()));
     let judged = |c: C64, error: f64, sum: f64| error <= (UNCONVERGED * c.norm()).max(1e-6 * sum);
     let (good0, good2) = (
         judged(point.c0, error0, scale),

@@ -1,481 +1,444 @@
-//! The amplitude expansion, order by order.
+//! The amplitude expansion for any modes, to any order.
 //!
-//! X' = Σ_m A^m { X[0;m] + Σ_k (X[k;m] e^{ikθ} + c.c.) },  dA/dt = a0 A + a2 A³ + …,
-//! dθ/dt = b0 + b2 A² + …, P (3.13)–(3.16). For every (k, m)
-//! [(m a0 + i k b0) M0 − L_k] X[k;m] = G[k;m] − c_{m−1} δ_{k1} M0 X[1;1], P (3.18).
+//! X' = Σ_j z_j φ_j e^{i q_j x} + c.c. + Σ_α X_α z^p z̄^s e^{i q_α x},  α = (p, s),  q_α = Σ_j (p_j − s_j) q_j,
+//! dz_j/dt = c_j z_j + Σ_{α ∈ R_j} g_jα z^p z̄^s,
+//! [σ_α M0 − L_{q_α}] X_α = G_α − Σ_{j: α ∈ R_j} g_jα M0 φ_j,  σ_α = Σ_j (p_j c_j + s_j c̄_j),  ⟨ψ_j, M0 X_α⟩ = 0.
+//!
+//! One mode to third order is P (3.13)–(3.22). Resonant, in R_j, are the monomials with the wavenumber of mode j
+//! and, where something oscillates, its frequency.
 
-use super::mode::{JetTable, Jets, Mode};
-use crate::collocation::GridKind;
-use crate::dense::{Factorised, Scalar, norm, scalars};
+use super::cubic::fundamental;
+use super::forcing::Forcing;
+use super::mode::Mode;
+use super::response::{Multiplier, Question, Response, arithmetic};
+use super::system::{AmplitudeSystem, Term};
+use crate::dense::dot;
 use crate::error::{Error, Result};
-use crate::model::{C64, ClosureKind, End, Jet};
-use crate::problem::{Problem, Solver, quarter_turn};
+use crate::model::C64;
+use crate::problem::Problem;
+use crate::series::{Arithmetic, Monomial, Monomials};
 use crate::spectrum::EigenPair;
-use std::collections::{BTreeMap, HashMap};
 
-/// Harmonic k ≥ 0 and order m.
-pub type Key = (usize, usize);
+/// Wavenumbers that differ by a smaller part of the largest are one.
+const SAME: f64 = 1e-9;
 
-/// A factorised problem in either arithmetic.
-enum AnySolver {
-    Real(Solver<f64>),
-    Complex(Solver<C64>),
-}
-
-/// Scalars whose factorised problems can be kept side by side.
-trait Kept: Scalar {
-    fn kept(solver: Solver<Self>) -> AnySolver;
-}
-
-impl Kept for f64 {
-    fn kept(solver: Solver<f64>) -> AnySolver {
-        AnySolver::Real(solver)
-    }
-}
-
-impl Kept for C64 {
-    fn kept(solver: Solver<C64>) -> AnySolver {
-        AnySolver::Complex(solver)
-    }
-}
-
-/// The multiplier of a closure of a mean mode.
-#[derive(Clone, Debug)]
-pub struct Multiplier {
-    /// What is closed, in words.
-    pub closure: String,
-    pub order: usize,
-    /// Its size in the balances over that of the forcing.
-    pub relative: f64,
-    /// Whether it has to vanish.
-    pub vanishes: bool,
+/// A mode with an amplitude of its own.
+#[derive(Clone)]
+pub struct CriticalMode {
+    pub pair: EigenPair,
+    /// φ, normalised.
+    pub profile: Mode,
+    /// M0 φ, in the solver's basis.
+    column: Vec<C64>,
+    /// M0ᴴ ψ
+    row: Vec<C64>,
 }
 
 /// The modes and coefficients found so far.
 pub struct Expansion<'p, 'm> {
     pub problem: &'p Problem<'m>,
-    pub k: f64,
-    pub pair: EigenPair,
-    pub modes: BTreeMap<Key, Mode>,
-    /// c0, c2, … as a0 + i b0, a2 + i b2, …
-    pub landau: Vec<C64>,
-    /// Multipliers of the closures at k = 0.
+    pub modes: Vec<CriticalMode>,
+    pub system: AmplitudeSystem,
+    /// Multipliers of the closures at q = 0.
     pub multipliers: Vec<Multiplier>,
-    /// The factorised problems of modes that were solved for.
-    solvers: BTreeMap<Key, AnySolver>,
-    /// Jets of a mode on the grids of the rows, made when first needed.
-    jets: HashMap<(Key, GridKind), Jets>,
+    arithmetic: Arithmetic,
+    monomials: Monomials,
+    /// X_α by degree, from 1 on, of the stored monomials.
+    profiles: Vec<Vec<Mode>>,
+    forcing: Forcing,
+    responses: Vec<(Monomial, Response)>,
 }
 
 impl<'p, 'm> Expansion<'p, 'm> {
-    /// Starts from the normalised fundamental.
+    /// The modes alone: order 1.
     ///
     /// # Errors
-    /// A mode that the spec's normalisation does not fit.
-    pub fn new(problem: &'p Problem<'m>, pair: EigenPair) -> Result<Self> {
-        let values = problem.physical(&pair.right);
-        let factor = super::normalise(problem, pair.k, &values)?;
-        let values: Vec<C64> = values.into_iter().map(|v| v * factor).collect();
-        let rate = values.iter().map(|v| v * pair.c).collect();
-        let mut modes = BTreeMap::new();
-        modes.insert(
-            (1, 1),
-            Mode {
-                harmonic: 1,
-                values,
-                rate,
-                drift: Vec::new(),
-                uniform: Vec::new(),
-            },
-        );
-        let (k, landau) = (pair.k, vec![pair.c]);
-        Ok(Expansion {
+    /// A mode that the spec's normalisation does not fit, two modes that are one.
+    pub fn new(problem: &'p Problem<'m>, pairs: Vec<EigenPair>) -> Result<Self> {
+        let rates: Vec<C64> = pairs.iter().map(|pair| pair.c).collect();
+        distinct(&pairs)?;
+        let arithmetic = arithmetic(problem, &rates);
+        let mut modes = Vec::new();
+        for pair in pairs {
+            let profile = fundamental(problem, &pair)?;
+            let mass = problem.mass::<C64>(pair.k);
+            modes.push(CriticalMode {
+                column: mass.apply(&problem.solver_basis(&profile.values)),
+                row: mass.apply_adjoint(&pair.left),
+                profile,
+                pair,
+            });
+        }
+        let k = modes.first().map_or(0.0, |mode| mode.pair.k);
+        let mut expansion = Expansion {
             problem,
-            k,
-            pair,
-            modes,
-            landau,
+            system: AmplitudeSystem::linear(&rates),
             multipliers: Vec::new(),
-            solvers: BTreeMap::new(),
-            jets: HashMap::new(),
+            arithmetic,
+            monomials: Monomials::new(modes.len()),
+            profiles: vec![modes.iter().map(|mode| mode.profile.clone()).collect()],
+            forcing: Forcing::new(problem, k, arithmetic)?,
+            responses: Vec::new(),
+            modes,
+        };
+        expansion.monomials.extend();
+        let wanted: Vec<usize> = (0..expansion.modes.len()).collect();
+        expansion.forcing.begin(&expansion.monomials, 1, &wanted);
+        expansion.complete(1);
+        Ok(expansion)
+    }
+
+    /// All modes and coefficients to an order.
+    ///
+    /// # Errors
+    /// As [`Expansion::new`], and a singular problem: resonance.
+    pub fn to(problem: &'p Problem<'m>, pairs: Vec<EigenPair>, order: usize) -> Result<Self> {
+        let mut expansion = Expansion::new(problem, pairs)?;
+        while expansion.order() < order {
+            expansion.advance()?;
+        }
+        Ok(expansion)
+    }
+
+    /// The order of the modes found.
+    pub fn order(&self) -> usize {
+        self.profiles.len()
+    }
+
+    /// All monomials, conjugates too, whose modes are known, with these, from degree 1 on.
+    pub fn known(&self) -> Vec<(Monomial, Mode)> {
+        let mut all = Vec::new();
+        for (degree, profiles) in (1..).zip(&self.profiles) {
+            for (monomial, mode) in self.monomials.of(degree).iter().zip(profiles) {
+                all.push((monomial.clone(), mode.clone()));
+                if !monomial.is_real() {
+                    all.push((monomial.conjugate(), mode.conjugate()));
+                }
+            }
+        }
+        all
+    }
+
+    /// The mode of z^p z̄^s.
+    pub fn profile(&self, monomial: &Monomial) -> Option<Mode> {
+        let place = self.monomials.place(monomial)?;
+        let mode = self
+            .profiles
+            .get(place.degree.checked_sub(1)?)?
+            .get(place.index)?;
+        Some(match place.conjugate {
+            true => mode.conjugate(),
+            false => mode.clone(),
         })
     }
 
-    /// How far the problem that was solved for X[k;m] is from singularity.
-    pub fn distance(&self, key: Key) -> Option<f64> {
-        let k = key.0 as f64 * self.k;
-        Some(match self.solvers.get(&key)? {
-            AnySolver::Real(solver) => solver.distance(&self.problem.mass(k)),
-            AnySolver::Complex(solver) => solver.distance(&self.problem.mass(k)),
-        })
+    /// q_α, with the wavenumbers of modes to the last digit.
+    pub fn wavenumber(&self, alpha: &Monomial) -> f64 {
+        let own = || self.modes.iter().map(|mode| mode.pair.k);
+        let q: f64 = alpha.differences().zip(own()).map(|(d, q)| d * q).sum();
+        let largest = own().fold(0.0, |m: f64, q| m.max(q.abs()));
+        let known = own().chain(own().map(|q| -q)).chain([0.0]);
+        let same = |other: &f64| (q - other).abs() <= SAME * largest;
+        known.into_iter().find(same).unwrap_or(q)
     }
 
-    /// m a0 + i k b0
-    pub fn shift(&self, (k, m): Key) -> C64 {
-        C64::new(m as f64 * self.landau[0].re, k as f64 * self.landau[0].im)
+    /// σ_α
+    pub fn shift(&self, alpha: &Monomial) -> C64 {
+        let exponents = alpha.z.iter().zip(&alpha.conj);
+        let terms = exponents.zip(&self.modes).map(|((&p, &s), mode)| {
+            let c = mode.pair.c;
+            c * f64::from(p) + c.conj() * f64::from(s)
+        });
+        terms.sum()
     }
 
-    /// Solves for X[k;m], k ≠ 1, all modes of lower order being known.
+    /// The modes whose amplitude equations a monomial enters.
+    fn resonant(&self, alpha: &Monomial) -> Vec<usize> {
+        let (q, shift) = (self.wavenumber(alpha), self.shift(alpha));
+        let frequency = |mode: &CriticalMode| {
+            let size = mode.pair.c.norm().max(mode.pair.scale);
+            let own = mode.pair.c.im;
+            (own.abs() > SAME * size).then_some(own.abs())
+        };
+        let least = self.modes.iter().filter_map(frequency);
+        let reach = 0.5 * least.fold(f64::INFINITY, f64::min);
+        let meets =
+            |mode: &CriticalMode| q == mode.pair.k && !((shift.im - mode.pair.c.im).abs() > reach);
+        let modes = self.modes.iter().enumerate();
+        modes.filter(|(_, m)| meets(m)).map(|(j, _)| j).collect()
+    }
+
+    /// The next order: every X_α, and the coefficients of the amplitude equations.
     ///
     /// # Errors
     /// A singular problem: resonance.
-    pub fn solve(&mut self, key: Key) -> Result<()> {
-        // Without the mirror a mean mode is real in the basis of the fields themselves.
-        let plain_mean = key.0 == 0 && !self.problem.is_real();
-        let mode = if self.is_real() || plain_mean {
-            self.solve_as::<f64>(key)?
-        } else {
-            self.solve_as::<C64>(key)?
-        };
-        self.modes.insert(key, mode);
+    pub fn advance(&mut self) -> Result<()> {
+        let (degree, posed) = self.begin();
+        let all: Vec<usize> = (0..posed.len()).collect();
+        let mut profiles = Vec::with_capacity(posed.len());
+        for (posed, right) in self.forcings(degree, &posed, &all) {
+            let mode = self.solve(&posed, right)?;
+            profiles.push(match posed.mirrored {
+                true => mode.conjugate(),
+                false => mode,
+            });
+        }
+        self.profiles.push(profiles);
+        self.complete(degree);
         Ok(())
     }
 
-    /// Whether every mode is a real vector of the solver's basis: in a model with the mirror symmetry, those of
-    /// a steady pattern, which is its own mirror image. A wave is not, and drives a mean flow along x.
-    fn is_real(&self) -> bool {
-        self.problem.is_real() && self.landau.iter().all(|c| c.im == 0.0)
+    /// The coefficients of the next order without its modes, by projection: ⟨ψ_j, G_α⟩ / ⟨ψ_j, M0 φ_j⟩.
+    /// The expansion ends here.
+    pub fn last_coefficients(mut self) -> AmplitudeSystem {
+        let (degree, posed) = self.begin();
+        let resonant: Vec<usize> = (0..posed.len())
+            .filter(|&index| !posed[index].resonant.is_empty())
+            .collect();
+        for (posed, right) in self.forcings(degree, &posed, &resonant) {
+            for j in posed.resonant {
+                let mode = &self.modes[j];
+                let left = &mode.pair.left;
+                let g = dot(left, &right) / dot(left, &mode.column);
+                let monomial = posed.alpha.clone();
+                self.system.equations[j].push(Term { monomial, g });
+            }
+        }
+        self.system
     }
 
-    fn solve_as<T: Kept>(&mut self, key: Key) -> Result<Mode> {
-        let harmonic = key.0;
-        let right = self.forcing(key);
-        let k = harmonic as f64 * self.k;
-        let shift = self.shift(key);
-        let mut system: Vec<T> = scalars(&right);
-        let matrix = self.problem.shifted::<T>(k, shift);
-        system.resize(matrix.nrows(), T::zero_impl());
-        let even = self.problem.even_part();
-        let solver = match even.filter(|_| harmonic == 0 && self.is_real()) {
-            Some(even) => Solver::even(&matrix, even),
-            None => Solver::whole(matrix),
+    /// Opens the next degree: the problems of its stored monomials.
+    fn begin(&mut self) -> (usize, Vec<Posed>) {
+        self.monomials.extend();
+        let degree = self.monomials.degree();
+        let posed = self.monomials.of(degree).iter();
+        (degree, posed.map(|stored| self.pose(stored)).collect())
+    }
+
+    /// The problem of a monomial, or that of its conjugate: the one that amplitude equations need, or the one of
+    /// positive wavenumber.
+    fn pose(&self, stored: &Monomial) -> Posed {
+        let (own, other) = (stored.clone(), stored.conjugate());
+        let (resonant, conjugate) = (self.resonant(&own), self.resonant(&other));
+        let mirrored = match (resonant.is_empty(), conjugate.is_empty()) {
+            (false, _) => false,
+            (true, false) => true,
+            (true, true) => self.wavenumber(&own) < 0.0,
         };
-        let solution = solver.solve(&system).ok_or_else(|| self.singular(key))?;
-        self.solvers.insert(key, T::kept(solver));
-        if harmonic == 0 {
-            let n = self.problem.direct.layout.size;
-            self.record_multipliers(key.1, &solution[n..], norm(&right));
-        }
-        Ok(self.mode(key, &solution))
-    }
-
-    fn singular(&self, (harmonic, order): Key) -> Error {
-        let advice = if harmonic == 0 {
-            "a mean is left open: the block `mean` accepts `gauge` for a field that is determined up \
-             to a constant and `conserved` for an integral that does not change"
-                .to_owned()
-        } else {
-            format!("a resonance at k = {}: try a wavenumber beside it", self.k)
-        };
-        Error::computation(format!(
-            "the problem for X[{harmonic};{order}] is singular, {advice}"
-        ))
-    }
-
-    /// X[1;3] and c2 together: the bordered problem, closed by ⟨left vector, M0 X[1;3]⟩ = 0.
-    ///
-    /// # Errors
-    /// A singular problem.
-    pub fn solve_fundamental(&mut self, order: usize) -> Result<()> {
-        let key = (1, order);
-        let (mode, coefficient) = if self.is_real() {
-            self.bordered::<f64>(key)?
-        } else {
-            self.bordered::<C64>(key)?
-        };
-        self.landau.push(coefficient);
-        self.modes.insert(key, mode);
-        // The rate of X[1;m] gains the new coefficient times the fundamental.
-        let fundamental = self.modes[&(1, 1)].values.clone();
-        if let Some(mode) = self.modes.get_mut(&key) {
-            for (rate, value) in mode.rate.iter_mut().zip(&fundamental) {
-                *rate += coefficient * value;
-            }
-        }
-        Ok(())
-    }
-
-    fn bordered<T: Scalar>(&mut self, key: Key) -> Result<(Mode, C64)> {
-        let n = self.problem.direct.layout.size;
-        let right = self.forcing(key);
-        let matrix = self.problem.shifted::<T>(self.k, self.shift(key));
-        let mass = self.problem.mass::<T>(self.k);
-        let fundamental: Vec<T> = scalars(&self.solver_basis(&self.modes[&(1, 1)].values));
-        let left: Vec<T> = scalars(&self.pair.left);
-        let border = (mass.apply(&fundamental), mass.apply_adjoint(&left));
-        let bordered = crate::dense::bordered(&matrix, &[border]);
-        let mut system: Vec<T> = scalars(&right);
-        system.push(T::from_complex(C64::new(0.0, 0.0)));
-        let solution = Factorised::new(bordered).solve_regular(&system);
-        let solution = solution
-            .ok_or_else(|| Error::computation("the bordered problem for c2 is singular"))?;
-        Ok((self.mode(key, &solution[..n]), solution[n].complex()))
-    }
-
-    /// The multipliers of closures that are no unknowns of the model.
-    fn record_multipliers<T: Scalar>(&mut self, order: usize, values: &[T], forcing: f64) {
-        for (border, value) in self.problem.borders.iter().zip(values) {
-            let size = norm(&border.column) * value.size();
-            let relative = if size == 0.0 { 0.0 } else { size / forcing };
-            if border.kind != ClosureKind::Unknown {
-                self.multipliers.push(Multiplier {
-                    closure: border.name.clone(),
-                    order,
-                    relative,
-                    vanishes: border.kind != ClosureKind::Drift,
-                });
-            }
+        Posed {
+            alpha: if mirrored { other } else { own },
+            resonant: if mirrored { conjugate } else { resonant },
+            mirrored,
         }
     }
 
-    fn mode<T: Scalar>(&mut self, key: Key, solution: &[T]) -> Mode {
-        let (harmonic, order) = key;
-        let values = self.problem.physical(solution);
-        let mut rate: Vec<C64> = values.iter().map(|v| v * self.shift(key)).collect();
-        // ∂t (A^q e^{ikθ}) reaches order m through a_{m−q}, b_{m−q}.
-        for (&(k, q), lower) in &self.modes {
-            let step = order.saturating_sub(q);
-            if k == harmonic
-                && step > 0
-                && step % 2 == 0
-                && let Some(c) = self.landau.get(step / 2)
-            {
-                let factor = C64::new(q as f64 * c.re, k as f64 * c.im);
-                rate.iter_mut()
-                    .zip(&lower.values)
-                    .for_each(|(r, v)| *r += factor * v);
-            }
-        }
-        let n = self.problem.direct.layout.size;
-        let profiles = self.problem.direct.layout.columns.len();
-        let mut drift = Vec::new();
-        let mut uniform =
-            vec![C64::new(0.0, 0.0); self.problem.structure().fields.len() - profiles];
-        if harmonic == 0 {
-            for (border, value) in self.problem.borders.iter().zip(&solution[n..]) {
-                let Some(field) = border.field else { continue };
-                let turn = quarter_turn(self.problem.direct.column_turn(field));
-                let value = value.complex() * turn * border.unit;
-                match border.kind {
-                    ClosureKind::Unknown => uniform[field - profiles] = value,
-                    ClosureKind::Drift => {
-                        let block = &self.problem.direct.layout.columns[field];
-                        drift.resize(n, C64::new(0.0, 0.0));
-                        drift[block.offset..][..block.len].fill(value);
-                    }
-                    ClosureKind::Conserved | ClosureKind::Claimed | ClosureKind::Gauge => {}
-                }
-            }
-        }
-        rate.iter_mut().zip(&drift).for_each(|(r, d)| *r += d);
-        Mode {
-            harmonic: harmonic as i32,
-            values,
-            rate,
-            drift,
-            uniform,
-        }
-    }
-
-    /// Physical values in the solver's basis.
-    pub(super) fn solver_basis(&self, values: &[C64]) -> Vec<C64> {
-        let ones = vec![C64::new(1.0, 0.0); values.len()];
-        let turns = self.problem.physical(&ones);
-        values.iter().zip(turns).map(|(v, t)| v / t).collect()
-    }
-
-    /// G[k;m] with the boundary data, in the solver's basis: everything that modes of lower order
-    /// force, except what c_{m−1} multiplies.
-    pub fn forcing(&mut self, key: Key) -> Vec<C64> {
-        let mut right = vec![C64::new(0.0, 0.0); self.problem.direct.layout.size];
-        // Lower orders of the same harmonic through the time derivative: −(q a + i k b) M0 X[k;q].
-        self.time_terms(key, &mut right);
-        for part in self.products_forcing(key) {
-            right.iter_mut().zip(part).for_each(|(r, p)| *r += p);
-        }
-        right
-    }
-
-    /// The part of G[k;m] that products of modes force, one vector a product.
-    pub fn products_forcing(&mut self, key: Key) -> Vec<Vec<C64>> {
-        let mut parts = Vec::new();
-        for degree in 2..=self.problem.structure().order {
-            for (factors, multiplicity) in products(&self.modes, key, degree) {
-                let mut part = vec![C64::new(0.0, 0.0); self.problem.direct.layout.size];
-                self.add_product(degree, &factors, multiplicity, &mut part);
-                parts.push(part);
-            }
-        }
-        parts
-    }
-
-    fn time_terms(&self, (k, m): Key, right: &mut [C64]) {
-        for (&(harmonic, q), mode) in &self.modes {
-            // q = 1, k = 1 goes with the unknown c_{m−1}.
-            if harmonic != k || q >= m || (m - q) % 2 == 1 || (k, q) == (1, 1) {
-                continue;
-            }
-            let Some(c) = self.landau.get((m - q) / 2) else {
-                continue;
-            };
-            let factor = C64::new(q as f64 * c.re, k as f64 * c.im);
-            let mass = self.problem.mass::<C64>(k as f64 * self.k);
-            let values = self.solver_basis(&mode.values);
-            let product = mass.apply(&values);
-            right
-                .iter_mut()
-                .zip(product)
-                .for_each(|(r, p)| *r -= factor * p);
-        }
-    }
-
-    fn add_product(
+    /// G of the wanted problems of a degree, in the solver's basis, the known part of the rates included.
+    fn forcings(
         &mut self,
         degree: usize,
-        factors: &[(Key, bool)],
-        multiplicity: f64,
-        right: &mut [C64],
-    ) {
-        let problem = self.problem;
-        let structure = problem.structure();
-        for row in 0..structure.balances.len() {
-            if !structure.forms[degree - 2][row] {
-                continue;
-            }
-            let block = &problem.direct.layout.rows[row];
-            for (key, _) in factors {
-                self.prepare(*key, block.grid);
-            }
-            let tables: Vec<&JetTable> = factors
-                .iter()
-                .map(|(key, conjugate)| self.jets[&(*key, block.grid)].of(*conjugate))
-                .collect();
-            let turn = problem.direct.row_factor(row) * multiplicity;
-            for (i, c) in problem.nonlinear[row].iter().enumerate() {
-                let arguments: [&[C64]; 4] =
-                    std::array::from_fn(|a| tables.get(a).map_or(&[][..], |t| t.at(i)));
-                let value = problem.model.form(degree, row, c, &arguments[..degree]);
-                right[block.offset + i] += turn * value;
-            }
-        }
-        for (index, wall) in problem.direct.walls.iter().enumerate() {
-            let terms: Vec<_> = wall
-                .nonlinear
-                .iter()
-                .filter(|(m, _)| m.len() == degree)
-                .collect();
-            if terms.is_empty() {
-                continue;
-            }
-            let end = if wall.end == End::Lower {
-                GridKind::Lower
-            } else {
-                GridKind::Upper
+        posed: &[Posed],
+        wanted: &[usize],
+    ) -> Vec<(Posed, Vec<C64>)> {
+        self.forcing.begin(&self.monomials, degree, wanted);
+        let known = |(index, posed): (usize, &Posed)| {
+            let rate = self.known_rate(&posed.alpha)?;
+            let mode = Mode {
+                q: self.wavenumber(&posed.alpha),
+                values: vec![C64::new(0.0, 0.0); rate.len()],
+                rate,
+                drift: Vec::new(),
+                uniform: Vec::new(),
             };
-            let modes: Vec<Mode> = factors.iter().map(|f| self.factor(*f)).collect();
-            let mut total = C64::new(0.0, 0.0);
-            for (monomial, coefficient) in terms {
-                let value = symmetric_product(problem, self.k, &modes, monomial, end);
-                total += value * *coefficient;
-            }
-            let position = problem.direct.layout.walls + index;
-            // 0 = W x + N(x): a row of L, and its data beside those of the balances.
-            right[position] += problem.direct.wall_factor(wall) * total * multiplicity;
-        }
+            let mode = if posed.mirrored {
+                mode.conjugate()
+            } else {
+                mode
+            };
+            wanted.contains(&index).then_some(mode)
+        };
+        let known: Vec<Option<Mode>> = posed.iter().enumerate().map(known).collect();
+        let found = self
+            .forcing
+            .outputs(self.problem, &self.monomials, degree, &known);
+        let right = |&index: &usize| {
+            let right = match posed[index].mirrored {
+                true => found[index].conjugate_right(),
+                false => found[index].right(),
+            };
+            (posed[index].clone(), right)
+        };
+        wanted.iter().map(right).collect()
     }
 
-    fn factor(&self, ((k, m), conjugate): (Key, bool)) -> Mode {
-        let mode = &self.modes[&(k, m)];
-        if conjugate {
-            mode.conjugate()
-        } else {
-            mode.clone()
-        }
-    }
-
-    /// Jets of one mode on one grid.
-    fn prepare(&mut self, key: Key, grid: GridKind) {
-        let (problem, k, mode) = (self.problem, self.k, &self.modes[&key]);
-        self.jets.entry((key, grid)).or_insert_with(|| {
-            let jets = &problem.structure().form_jets;
-            Jets::new(mode.jets(problem, k, jets, grid))
+    fn solve(&mut self, posed: &Posed, forcing: Vec<C64>) -> Result<Mode> {
+        let alpha = &posed.alpha;
+        let borders = posed.resonant.iter().map(|&j| {
+            let mode = &self.modes[j];
+            (mode.column.clone(), mode.row.clone())
         });
-    }
-}
-
-/// 1/d! Σ over permutations of Π jets at one end.
-fn symmetric_product(
-    problem: &Problem,
-    k: f64,
-    modes: &[Mode],
-    monomial: &[Jet],
-    end: GridKind,
-) -> C64 {
-    fn sum(values: &[Vec<C64>], position: usize, used: u32) -> C64 {
-        if position == values.len() {
-            return C64::new(1.0, 0.0);
+        let borders: Vec<_> = borders.collect();
+        let question = Question {
+            q: self.wavenumber(alpha),
+            shift: self.shift(alpha),
+            forcing,
+            arithmetic: self.arithmetic,
+            is_real: alpha.is_real(),
+            borders: &borders,
+        };
+        let response = question
+            .answer(self.problem)
+            .ok_or_else(|| self.singular(alpha))?;
+        let mut mode = response.mode.clone();
+        if let Some(rate) = self.known_rate(alpha) {
+            mode.rate.iter_mut().zip(rate).for_each(|(r, k)| *r += k);
         }
-        let open = (0..values.len()).filter(|i| used >> i & 1 == 0);
-        open.map(|i| values[position][i] * sum(values, position + 1, used | 1 << i))
-            .sum()
+        for (&j, &g) in posed.resonant.iter().zip(&response.coefficients) {
+            let profile = &self.modes[j].profile.values;
+            let rates = mode.rate.iter_mut().zip(profile);
+            rates.for_each(|(r, v)| *r += g * v);
+            let monomial = alpha.clone();
+            self.system.equations[j].push(Term { monomial, g });
+        }
+        let order = alpha.degree();
+        for (closure, relative, vanishes) in &response.closures {
+            self.multipliers.push(Multiplier {
+                closure: closure.clone(),
+                order,
+                relative: *relative,
+                vanishes: *vanishes,
+            });
+        }
+        self.responses.push((alpha.clone(), response));
+        Ok(mode)
     }
-    let values: Vec<Vec<C64>> = monomial
-        .iter()
-        .map(|&jet| {
-            modes
+
+    /// Σ X_γ d/dt of lower monomials γ that gives z^p z̄^s through the nonlinear terms of the amplitude equations.
+    fn known_rate(&self, alpha: &Monomial) -> Option<Vec<C64>> {
+        let mut rate: Option<Vec<C64>> = None;
+        for degree in 2..alpha.degree() {
+            let found = self
+                .monomials
+                .of(degree)
                 .iter()
-                .map(|mode| mode.jet(problem, k, jet, end)[0])
-                .collect()
-        })
-        .collect();
-    let factorial: f64 = (1..=modes.len()).map(|i| i as f64).product();
-    sum(&values, 0, 0) / factorial
+                .zip(&self.profiles[degree - 1]);
+            for (stored, mode) in found {
+                for gamma in [stored.clone(), stored.conjugate()] {
+                    let factor = self.rate_factor(alpha, &gamma);
+                    if factor != C64::new(0.0, 0.0) {
+                        let conjugate = gamma != *stored;
+                        let rate =
+                            rate.get_or_insert_with(|| vec![C64::new(0.0, 0.0); mode.values.len()]);
+                        for (r, v) in rate.iter_mut().zip(&mode.values) {
+                            *r += factor * if conjugate { v.conj() } else { *v };
+                        }
+                    }
+                    if stored.is_real() {
+                        break;
+                    }
+                }
+            }
+        }
+        rate
+    }
+
+    /// The coefficient of α in the part of dγ/dt that is nonlinear in the amplitudes:
+    /// Σ_j p_j γ/z_j Σ g_jβ β and its like for z̄_j.
+    fn rate_factor(&self, alpha: &Monomial, gamma: &Monomial) -> C64 {
+        let n = self.modes.len();
+        let mut factor = C64::new(0.0, 0.0);
+        for j in 0..n {
+            let z = Monomial::amplitude(n, j);
+            let coefficient = |beta: Option<Monomial>| {
+                let beta = beta.filter(|beta| beta.degree() > 1)?;
+                self.system.coefficient(j, &beta)
+            };
+            let own = gamma.over(&z).and_then(|rest| alpha.over(&rest));
+            if let Some(g) = coefficient(own) {
+                factor += g * f64::from(gamma.z[j]);
+            }
+            let other = gamma
+                .over(&z.conjugate())
+                .and_then(|rest| alpha.over(&rest));
+            if let Some(g) = coefficient(other.map(|beta| beta.conjugate())) {
+                factor += g.conj() * f64::from(gamma.conj[j]);
+            }
+        }
+        factor
+    }
+
+    fn complete(&mut self, degree: usize) {
+        let modes = self.profiles[degree - 1].iter().cloned().map(Some);
+        let modes: Vec<Option<Mode>> = modes.collect();
+        self.forcing
+            .complete(self.problem, &self.monomials, degree, &modes);
+    }
+
+    /// Every solved problem's distance from singularity.
+    pub fn distances(&self) -> Vec<Distance> {
+        let distance = |(monomial, response): &(Monomial, Response)| Distance {
+            monomial: monomial.clone(),
+            q: self.wavenumber(monomial),
+            shift: self.shift(monomial),
+            distance: response.distance(self.problem),
+        };
+        self.responses.iter().map(distance).collect()
+    }
+
+    fn singular(&self, alpha: &Monomial) -> Error {
+        let q = self.wavenumber(alpha);
+        let advice = if q == 0.0 {
+            "a mean is left open: the block `mean` accepts `gauge` for a field that is determined up to a constant and \
+             `conserved` for an integral that does not change"
+                .to_owned()
+        } else {
+            let include = self.modes.iter().map(|mode| mode.pair.k).chain([q]);
+            let include: Vec<String> = include.map(|k| format!("--mode k={k}")).collect();
+            format!(
+                "a resonance with a mode at k = {q}, which wants an amplitude of its own: `landau amplitudes` with {}",
+                include.join(" ")
+            )
+        };
+        Error::computation(format!(
+            "the problem for the coefficient of {} is singular, {advice}",
+            alpha.name()
+        ))
+    }
 }
 
-/// All products of `degree` modes that force (k, m): each multiset once, with the number of its
-/// orderings.
-fn products(
-    modes: &BTreeMap<Key, Mode>,
-    (k, m): Key,
-    degree: usize,
-) -> Vec<(Vec<(Key, bool)>, f64)> {
-    let mut candidates: Vec<(Key, bool)> = Vec::new();
-    for &key in modes.keys() {
-        candidates.push((key, false));
-        if key.0 > 0 {
-            candidates.push((key, true));
+/// How far one solved problem is from singularity.
+#[derive(Clone, Debug)]
+pub struct Distance {
+    pub monomial: Monomial,
+    pub q: f64,
+    /// σ_α
+    pub shift: C64,
+    pub distance: f64,
+}
+
+/// A problem of the expansion.
+#[derive(Clone)]
+struct Posed {
+    alpha: Monomial,
+    /// The modes whose amplitude equations it gives a coefficient to.
+    resonant: Vec<usize>,
+    /// Whether it is that of the conjugate of the stored monomial.
+    mirrored: bool,
+}
+
+/// Two modes at q and −q whose eigenvalues are conjugate are one, as are two that agree in both.
+fn distinct(pairs: &[EigenPair]) -> Result<()> {
+    for (i, a) in pairs.iter().enumerate() {
+        for b in &pairs[..i] {
+            let near = |x: C64, y: C64| (x - y).norm() <= 1e-6 * a.scale.max(a.c.norm());
+            let same = |q: f64| (a.k - q).abs() <= SAME * a.k.abs();
+            if (same(b.k) && near(a.c, b.c)) || (same(-b.k) && near(a.c, b.c.conj())) {
+                return Err(Error::input(format!(
+                    "the modes at k = {} and k = {} are one and the same: its amplitude and the conjugate of that \
+                     stand in one equation",
+                    b.k, a.k
+                )));
+            }
         }
     }
-    let mut found = Vec::new();
-    let mut open = vec![(Vec::<usize>::new(), 0_i64, 0_usize)];
-    while let Some((chosen, harmonic, order)) = open.pop() {
-        if chosen.len() == degree {
-            if harmonic == k as i64 && order == m {
-                let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();
-                let mut orderings = factorial(degree);
-                for index in 0..candidates.len() {
-                    orderings /= factorial(chosen.iter().filter(|&&c| c == index).count());
-                }
-                found.push((chosen.iter().map(|&i| candidates[i]).collect(), orderings));
-            }
-            continue;
-        }
-        let first = chosen.last().copied().unwrap_or(0);
-        for (index, ((harmonic_of, order_of), conjugate)) in
-            candidates.iter().enumerate().skip(first)
-        {
-            if order + order_of > m {
-                continue;
-            }
-            let sign = if *conjugate { -1 } else { 1 };
-            let mut longer = chosen.clone();
-            longer.push(index);
-            open.push((
-                longer,
-                harmonic + sign * *harmonic_of as i64,
-                order + order_of,
-            ));
-        }
-    }
-    found
+    Ok(())
 }

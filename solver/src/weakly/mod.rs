@@ -1,15 +1,22 @@
-//! Weakly nonlinear analysis: the amplitude expansion order by order, Landau coefficients.
+//! Weakly nonlinear analysis: Landau coefficients, amplitude expansions of any modes to any order.
 
 mod bifurcation;
+mod cubic;
 mod expansion;
-mod landau;
+mod forcing;
 mod mode;
 mod normalisation;
+mod outputs;
 mod pattern;
+mod response;
+mod system;
 
 pub use bifurcation::{Bifurcation, Side, equilibrium};
-pub use expansion::{Expansion, Key, Multiplier};
-pub use landau::{LandauPoint, Selection, from_pair, outputs, point, select, value_at, warm_point};
+pub use cubic::{LandauPoint, Selection, from_pair, point, select, warm_point};
+pub use expansion::{CriticalMode, Distance, Expansion};
 pub use mode::Mode;
 pub use normalisation::{normalise, quadrature_grid, quadrature_weights};
+pub use outputs::{outputs, value_at};
 pub use pattern::{Pattern, Window, pattern};
+pub use response::{Multiplier, arithmetic};
+pub use system::{AmplitudeSystem, Term, power};

@@ -1,17 +1,17 @@
-//! One Fourier mode X[k;m] of the expansion, and its derivatives where nonlinear terms need them.
+//! One Fourier mode of the expansion, and its derivatives where nonlinear terms need them.
 
 use crate::collocation::GridKind;
 use crate::dense::vectorised;
 use crate::model::{C64, Jet};
 use crate::problem::{Problem, quarter_turn};
 
-/// Values of X[k;m] and of its time derivative, physical, at the unknowns' points.
+/// Values of a mode and of its time derivative, physical, at the unknowns' points.
 #[derive(Clone, Debug)]
 pub struct Mode {
-    /// The harmonic: ∂x → i · harmonic · k_x.
-    pub harmonic: i32,
+    /// Its wavenumber: ∂x → i q.
+    pub q: f64,
     pub values: Vec<C64>,
-    /// Coefficient of A^m e^{ikθ} in ∂t X.
+    /// What stands beside the same amplitudes in ∂t X.
     pub rate: Vec<C64>,
     /// The part of it that is no multiple of a mode: constants that drift (mean modes alone; empty for none).
     pub drift: Vec<C64>,
@@ -20,11 +20,11 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// The mode of −k: complex conjugate.
+    /// The mode of −q: complex conjugate.
     pub fn conjugate(&self) -> Mode {
         let conj = |list: &Vec<C64>| list.iter().map(|c| c.conj()).collect();
         Mode {
-            harmonic: -self.harmonic,
+            q: -self.q,
             values: conj(&self.values),
             rate: conj(&self.rate),
             drift: conj(&self.drift),
@@ -33,7 +33,7 @@ impl Mode {
     }
 
     /// Jets at the points of one grid.
-    pub fn jets(&self, problem: &Problem, k: f64, jets: &[Jet], grid: GridKind) -> JetTable {
+    pub fn jets(&self, problem: &Problem, jets: &[Jet], grid: GridKind) -> JetTable {
         // Jets that differ in ∂x alone share one derivative of the profile.
         let mut derived: Vec<(Jet, Vec<C64>)> = Vec::new();
         let mut table = JetTable {
@@ -55,7 +55,7 @@ impl Mode {
             if table.values.is_empty() {
                 table.values = vec![C64::new(0.0, 0.0); column.len() * jets.len()];
             }
-            let factor = self.symbol(k, jet);
+            let factor = self.symbol(jet);
             let entries = table.values.iter_mut().skip(position).step_by(jets.len());
             for (entry, value) in entries.zip(column) {
                 *entry = factor * value;
@@ -66,16 +66,10 @@ impl Mode {
 
     /// What rounding can make of the jets, point by point, in units of the machine's precision:
     /// Σ |D| |value| in place of D value.
-    pub fn rounding(
-        &self,
-        problem: &Problem,
-        k: f64,
-        jets: &[Jet],
-        grid: GridKind,
-    ) -> Vec<Vec<f64>> {
+    pub fn rounding(&self, problem: &Problem, jets: &[Jet], grid: GridKind) -> Vec<Vec<f64>> {
         let mut table = vec![vec![0.0; jets.len()]; grid.count()];
         for (position, &jet) in jets.iter().enumerate() {
-            let factor = self.symbol(k, jet).norm();
+            let factor = self.symbol(jet).norm();
             let Some(block) = problem.direct.layout.columns.get(usize::from(jet.field)) else {
                 continue;
             };
@@ -93,22 +87,21 @@ impl Mode {
     }
 
     /// One jet at the points of a grid.
-    pub fn jet(&self, problem: &Problem, k: f64, jet: Jet, grid: GridKind) -> Vec<C64> {
-        let factor = self.symbol(k, jet);
+    pub fn jet(&self, problem: &Problem, jet: Jet, grid: GridKind) -> Vec<C64> {
+        let factor = self.symbol(jet);
         let mut values = self.profile(problem, jet, grid);
         values.iter_mut().for_each(|v| *v *= factor);
         values
     }
 
-    /// (i k)^x |k|^absx of a jet.
-    fn symbol(&self, k: f64, jet: Jet) -> C64 {
-        let kx = f64::from(self.harmonic) * k;
-        let size = kx.powi(i32::from(jet.x)) * kx.abs().powi(i32::from(jet.absx));
+    /// (i q)^x |q|^absx of a jet.
+    pub(super) fn symbol(&self, jet: Jet) -> C64 {
+        let size = self.q.powi(i32::from(jet.x)) * self.q.abs().powi(i32::from(jet.absx));
         quarter_turn(usize::from(jet.x)) * size
     }
 
     /// ∂t and ∂y of a jet at the points of a grid, its x-derivatives left out.
-    fn profile(&self, problem: &Problem, jet: Jet, grid: GridKind) -> Vec<C64> {
+    pub(super) fn profile(&self, problem: &Problem, jet: Jet, grid: GridKind) -> Vec<C64> {
         let field = usize::from(jet.field);
         let Some(block) = problem.direct.layout.columns.get(field) else {
             let profiles = problem.direct.layout.columns.len();
@@ -160,31 +153,10 @@ impl JetTable {
     }
 
     /// The jets of the conjugate mode.
-    fn conjugate(&self) -> JetTable {
+    pub fn conjugate(&self) -> JetTable {
         JetTable {
             jets: self.jets,
             values: self.values.iter().map(|v| v.conj()).collect(),
-        }
-    }
-}
-
-/// A mode's jets and those of its conjugate.
-pub struct Jets {
-    plain: JetTable,
-    conjugate: JetTable,
-}
-
-impl Jets {
-    pub fn new(plain: JetTable) -> Self {
-        let conjugate = plain.conjugate();
-        Jets { plain, conjugate }
-    }
-
-    pub fn of(&self, conjugate: bool) -> &JetTable {
-        if conjugate {
-            &self.conjugate
-        } else {
-            &self.plain
         }
     }
 }

@@ -1,10 +1,12 @@
 //! Patterns in the plane: base state, fundamental, and the expansion through third order.
 
+use super::cubic::LandauPoint;
 use super::expansion::Expansion;
-use super::landau::LandauPoint;
+use super::mode::Mode;
 use crate::collocation::{Grid, GridKind};
 use crate::error::Result;
 use crate::model::C64;
+use crate::problem::Problem;
 
 /// Fields over a rectangle of the (x, y)-plane; arrays are `[field][y][x]`.
 pub struct Pattern {
@@ -22,6 +24,9 @@ pub struct Pattern {
     pub nonlinear: Vec<Vec<Vec<f64>>>,
 }
 
+/// The order of the expansion that is drawn.
+const ORDER: usize = 3;
+
 /// How fine, and how many wavelengths.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
@@ -35,8 +40,8 @@ pub struct Window {
 /// # Errors
 /// A resonance at third order.
 pub fn pattern(point: &LandauPoint, amplitude: f64, window: Window) -> Result<Pattern> {
-    let expansion = point.third_order()?;
-    let problem = expansion.problem;
+    let expansion = Expansion::to(point.problem, vec![point.pair.clone()], ORDER)?;
+    let (problem, k) = (point.problem, point.k());
     let (model, structure) = (problem.model, problem.structure());
     let heights = match problem.resolution {
         0 => 1,
@@ -48,7 +53,7 @@ pub fn pattern(point: &LandauPoint, amplitude: f64, window: Window) -> Result<Pa
             _ => -1.0 + 2.0 * j as f64 / (heights - 1) as f64,
         })
         .collect();
-    let length = window.wavelengths * 2.0 * std::f64::consts::PI / expansion.k;
+    let length = window.wavelengths * 2.0 * std::f64::consts::PI / k;
     let columns = window.columns.max(2);
     let x: Vec<f64> = (0..columns)
         .map(|i| length * i as f64 / (columns - 1) as f64)
@@ -57,30 +62,33 @@ pub fn pattern(point: &LandauPoint, amplitude: f64, window: Window) -> Result<Pa
     let base: Vec<Vec<f64>> = (0..profiles)
         .map(|field| {
             let position = structure.base_position(field, 0);
-            let at = |xi: &f64| problem.base.point(model, *xi, expansion.k)[position];
+            let at = |xi: &f64| problem.base.point(model, *xi, k)[position];
             places.iter().map(at).collect()
         })
         .collect();
-    let sum = |keys: &[(usize, usize)]| {
+    let modes = expansion.known();
+    let sum = |order: usize| {
+        let modes = modes
+            .iter()
+            .filter(|(monomial, _)| monomial.degree() <= order);
+        let modes: Vec<(f64, &Mode)> = modes
+            .map(|(monomial, mode)| (amplitude.powi(monomial.degree() as i32), mode))
+            .collect();
         let fields = base.iter().enumerate();
         fields
             .map(|(field, base)| {
-                let modes: Vec<(usize, Vec<C64>)> = keys
-                    .iter()
-                    .map(|&(harmonic, order)| {
-                        let size = amplitude.powi(order as i32);
-                        let profile = profile(&expansion, (harmonic, order), field, &places);
-                        (harmonic, profile.into_iter().map(|v| v * size).collect())
-                    })
-                    .collect();
-                superpose(base, &modes, expansion.k, &x)
+                let profile = |&(size, mode): &(f64, &Mode)| {
+                    let profile = profile(problem, mode, field, &places);
+                    (mode.q, profile.into_iter().map(|v| v * size).collect())
+                };
+                superpose(base, &modes.iter().map(profile).collect::<Vec<_>>(), &x)
             })
             .collect()
     };
     Ok(Pattern {
         amplitude,
-        linear: sum(&[(1, 1)]),
-        nonlinear: sum(&[(1, 1), (0, 2), (2, 2), (1, 3), (3, 3)]),
+        linear: sum(1),
+        nonlinear: sum(ORDER),
         names: structure.fields[..profiles]
             .iter()
             .map(|f| f.name.clone())
@@ -91,13 +99,10 @@ pub fn pattern(point: &LandauPoint, amplitude: f64, window: Window) -> Result<Pa
     })
 }
 
-/// X⁰ + Σ (X[0;m] once, the others with their complex conjugates)
-fn superpose(base: &[f64], modes: &[(usize, Vec<C64>)], k: f64, x: &[f64]) -> Vec<Vec<f64>> {
+/// X⁰ + Σ over modes and their conjugates.
+fn superpose(base: &[f64], modes: &[(f64, Vec<C64>)], x: &[f64]) -> Vec<Vec<f64>> {
     let value = |j: usize, x: f64| {
-        let part = |(harmonic, profile): &(usize, Vec<C64>)| match harmonic {
-            0 => profile[j].re,
-            _ => 2.0 * (profile[j] * C64::cis(*harmonic as f64 * k * x)).re,
-        };
+        let part = |(q, profile): &(f64, Vec<C64>)| (profile[j] * C64::cis(q * x)).re;
         base[j] + modes.iter().map(part).sum::<f64>()
     };
     let row = |j| x.iter().map(|&x| value(j, x)).collect();
@@ -105,9 +110,9 @@ fn superpose(base: &[f64], modes: &[(usize, Vec<C64>)], k: f64, x: &[f64]) -> Ve
 }
 
 /// One field of a mode at places in [−1, 1].
-fn profile(expansion: &Expansion, key: (usize, usize), field: usize, places: &[f64]) -> Vec<C64> {
-    let block = &expansion.problem.direct.layout.columns[field];
-    let own = &expansion.modes[&key].values[block.offset..block.offset + block.len];
+fn profile(problem: &Problem, mode: &Mode, field: usize, places: &[f64]) -> Vec<C64> {
+    let block = &problem.direct.layout.columns[field];
+    let own = &mode.values[block.offset..block.offset + block.len];
     if block.grid == GridKind::Point {
         return vec![own[0]; places.len()];
     }

@@ -15,11 +15,11 @@ use crate::weakly::{LandauPoint, Selection, quadrature_grid, quadrature_weights}
 const DEGREE: usize = 11;
 
 pub(super) fn check(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Vec<Check>> {
-    let problem = point.expansion.problem;
+    let problem = point.problem;
     if let Err(reason) = problem.adjoint() {
         return Ok(vec![Check::left_out(2, "duality", reason.to_string())]);
     }
-    let k = point.expansion.k;
+    let k = point.k();
     let mut checks = Vec::new();
     let worst = (0..4)
         .map(|seed| duality(problem, k, seed))

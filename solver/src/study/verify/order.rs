@@ -1,44 +1,54 @@
 //! Part 1: the residual order.
 //!
-//! X⁰ plus the series through X[3;3], with dA/dt = a0 A + a2 A³ and dθ/dt = b0 + b2 A², put into the
-//! *unexpanded* residual and boundary conditions: the defect must fall as A⁴. A wrong factor, shift,
-//! mass term, boundary datum or sign in N3 shows here, off criticality too. Every balance and every
+//! X⁰ plus the series through order N, with the amplitudes moving by their equations, put into the *unexpanded*
+//! residual and boundary conditions: the defect must fall as the amplitude to the power N + 1. A wrong factor,
+//! shift, mass term, boundary datum or sign in N3 shows here, off criticality too. Every balance and every
 //! condition is judged by itself, where its defect stands clear of what rounding leaves.
 
 use super::{Check, Verdict};
-use crate::collocation::{Grid, GridKind};
+use crate::collocation::{Block, Grid, GridKind};
 use crate::error::Result;
-use crate::model::{C64, End, Jet, ResidualCall, ResidualId, WithRounding};
+use crate::model::{C64, End, Jet, Kernel, ResidualId, WithRounding};
 use crate::problem::Problem;
-use crate::weakly::{Expansion, LandauPoint};
+use crate::series::Monomial;
+use crate::weakly::{Expansion, LandauPoint, Mode, power};
 
-/// Phases of the fundamental at which the defect is sampled: enough for the harmonics of A⁴.
-const PHASES: usize = 12;
-/// Halvings of the amplitude.
-const HALVINGS: usize = 14;
+/// Phases at which the defect is sampled, for each power of the amplitude that it falls by.
+const PHASES: usize = 3;
+/// Steps of the amplitude …
+const STEPS: usize = 28;
+/// … by which it falls …
+const RATIO: f64 = std::f64::consts::SQRT_2;
+/// … from this part of where the series ends to make sense.
+const START: f64 = 0.2;
 /// A defect counts while it stands this far above what the discretisation leaves, which is an estimate …
 const ABOVE_FLOOR: f64 = 300.0;
 /// … and this far above a bound of the rounding errors.
 const ABOVE_ROUNDING: f64 = 10.0;
-/// Halvings before a defect counts as falling by its leading power.
-const ASYMPTOTIC: usize = 2;
-/// The slope, within 2%.
-const SLOPE: f64 = 4.0;
+/// Two slopes one after another that differ by less are those of a power.
+const SETTLED: f64 = 0.01;
+/// How far below the order a slope may be.
+const SLACK: f64 = 0.98;
 
 /// How the defect falls.
 pub struct ResidualOrder {
-    /// The least log2 of the ratio of a defect at A and at A/2; nothing where rounding hides all.
+    /// The least power of the amplitude by which a defect falls; nothing where rounding hides all.
     pub slope: Option<f64>,
-    /// That A.
+    /// The amplitude, of all modes, at which it was found.
     pub amplitude: f64,
     /// The balance or condition of the least slope, or of the highest floor where nothing stands clear.
     pub row: String,
 }
 
 pub(super) fn check(point: &LandauPoint) -> Result<Vec<Check>> {
-    let found = residual_order(&point.third_order()?);
-    let bound = SLOPE * 0.98;
-    let name = "order of the residual in A".to_owned();
+    let expansion = Expansion::to(point.problem, vec![point.pair.clone()], 3)?;
+    Ok(vec![order_check("order of the residual in A", &expansion)])
+}
+
+/// The line of the certificate about one expansion.
+pub fn order_check(name: &str, expansion: &Expansion) -> Check {
+    let found = residual_order(expansion);
+    let bound = SLACK * (expansion.order() + 1) as f64;
     let (value, verdict, detail) = match found.slope {
         None => (
             f64::NAN,
@@ -52,19 +62,19 @@ pub(super) fn check(point: &LandauPoint) -> Result<Vec<Check>> {
             slope,
             Verdict::by(slope >= bound),
             format!(
-                "log2 of the ratio of defects at A = {:.2e} and its half, {}",
+                "power by which the defect falls at amplitude {:.2e}, {}",
                 found.amplitude, found.row
             ),
         ),
     };
-    Ok(vec![Check {
+    Check {
         part: 1,
-        name,
+        name: name.to_owned(),
         value,
         bound,
         verdict,
         detail,
-    }])
+    }
 }
 
 /// What is left of one balance or condition, and what rounding may have left.
@@ -76,17 +86,16 @@ struct Defect {
 
 /// The order at which the defect of the whole expansion falls.
 pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
-    let start = start(expansion);
-    let at = |amplitude: f64| defects(expansion, amplitude);
-    let amplitudes: Vec<f64> = (0..HALVINGS)
-        .map(|i| start / f64::powi(2.0, i as i32))
-        .collect();
-    let measured: Vec<Vec<Defect>> = amplitudes.iter().map(|&a| at(a)).collect();
-    // What the discretisation leaves at A = 0, and for each unit of A (from an amplitude so small that A⁴
-    // is nothing).
-    let rest = at(0.0);
+    let series = Series::new(expansion);
+    let start = START / series.reach();
+    let amplitudes: Vec<f64> = (0..STEPS).map(|i| start / RATIO.powi(i as i32)).collect();
+    let measured: Vec<Vec<Defect>> = amplitudes.iter().map(|&a| series.defects(a)).collect();
+    // What the discretisation leaves at A = 0, and for each unit of A (from an amplitude so small that no power
+    // of it counts).
+    let rest = series.defects(0.0);
     let tiny = start * 1e-5;
-    let linear: Vec<f64> = at(tiny)
+    let linear: Vec<f64> = series
+        .defects(tiny)
         .iter()
         .zip(&rest)
         .map(|(d, r)| (d.value - 2.0 * r.value).max(0.0) / tiny)
@@ -95,14 +104,21 @@ pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
         let left = rest[row].value + linear[row] * amplitudes[i];
         (ABOVE_FLOOR * left).max(ABOVE_ROUNDING * measured[i][row].rounding)
     };
+    // Over two steps.
+    let slope = |row: usize, i: usize| {
+        (measured[i - 2][row].value / measured[i][row].value).ln() / (2.0 * RATIO.ln())
+    };
     let judged = |row: usize| {
         let clear = |i: &usize| {
             let value = measured[*i][row].value;
             value > floor(row, *i) && value > 0.0
         };
-        let last = (ASYMPTOTIC + 1..HALVINGS).rev().find(clear)?;
-        let slope = (measured[last - 1][row].value / measured[last][row].value).log2();
-        Some((slope, row, last - 1))
+        let settled = |i: &usize| {
+            let (own, before) = (slope(row, *i), slope(row, *i - 1));
+            (own - before).abs() <= SETTLED * own.abs()
+        };
+        let last = (3..STEPS).rev().filter(clear).find(settled)?;
+        Some((slope(row, last), row, last))
     };
     let judged = (0..rest.len()).filter_map(judged);
     let least = judged.min_by(|a, b| a.0.total_cmp(&b.0));
@@ -144,156 +160,254 @@ fn name(problem: &Problem, row: usize) -> String {
     }
 }
 
-/// An amplitude at which the series still makes sense: a tenth of where second or third order catches up
-/// with the first, in the fields that have a time derivative (a pressure has a scale of its own) or in the
-/// amplitude equation.
-fn start(expansion: &Expansion) -> f64 {
-    let structure = expansion.problem.structure();
-    let columns = &expansion.problem.direct.layout.columns;
-    let moving = (0..columns.len()).filter(|&field| {
-        structure
-            .linear
-            .iter()
-            .any(|t| t.jet.t > 0 && usize::from(t.jet.field) == field)
-    });
-    let moving: Vec<_> = moving.map(|field| &columns[field]).collect();
-    // The largest ratio of a later mode to the fundamental, field by field: units do not matter.
-    let ratio = |keys: [(usize, usize); 2]| {
-        let size = |key: &(usize, usize), block: &crate::collocation::Block| {
-            let values = &expansion.modes[key].values[block.offset..][..block.len];
+/// The series, with the jets of its modes on all grids.
+struct Series<'e, 'p, 'm> {
+    expansion: &'e Expansion<'p, 'm>,
+    modes: Vec<(Monomial, Mode)>,
+    grids: Vec<OnGrid>,
+}
+
+/// Jets at the points of one grid.
+struct OnGrid {
+    grid: GridKind,
+    states: Vec<Vec<f64>>,
+    base: Vec<Vec<f64>>,
+    tables: Vec<Tables>,
+}
+
+/// `[point][jet]` of one mode: of X_α, whose rate follows from the amplitudes, and of what drifts besides.
+struct Tables {
+    plain: Vec<Vec<C64>>,
+    drift: Vec<Vec<C64>>,
+    rounding: Vec<Vec<f64>>,
+}
+
+impl<'e, 'p, 'm> Series<'e, 'p, 'm> {
+    fn new(expansion: &'e Expansion<'p, 'm>) -> Self {
+        let problem = expansion.problem;
+        // One of each pair of conjugates.
+        let known = expansion.known().into_iter();
+        let modes: Vec<(Monomial, Mode)> = known.filter(|(m, _)| m.z >= m.conj).collect();
+        let mut kinds: Vec<GridKind> = Vec::new();
+        let rows = problem.direct.layout.rows.iter().map(|block| block.grid);
+        let walls = problem.direct.walls.iter().map(|wall| match wall.end {
+            End::Lower => GridKind::Lower,
+            End::Upper => GridKind::Upper,
+        });
+        for grid in rows.chain(walls) {
+            if !kinds.contains(&grid) {
+                kinds.push(grid);
+            }
+        }
+        let jets = &problem.structure().residual_jets;
+        let k = expansion.modes.first().map_or(0.0, |mode| mode.pair.k);
+        let on = |grid: GridKind| {
+            let nodes = Grid::new(grid).nodes;
+            let states = nodes
+                .iter()
+                .map(|&xi| problem.base.point(problem.model, xi, k));
+            let states: Vec<Vec<f64>> = states.collect();
+            let tables = modes
+                .iter()
+                .map(|(_, mode)| Tables::new(problem, mode, jets, grid));
+            OnGrid {
+                grid,
+                base: states.iter().map(|s| base_jets(problem, s, jets)).collect(),
+                tables: tables.collect(),
+                states,
+            }
+        };
+        let grids = kinds.into_iter().map(on).collect();
+        Series {
+            expansion,
+            modes,
+            grids,
+        }
+    }
+
+    /// 1 / (an amplitude at which some order catches up with the first), in the fields that have a time derivative
+    /// (a pressure has a scale of its own) or in the amplitude equations.
+    fn reach(&self) -> f64 {
+        let expansion = self.expansion;
+        let structure = expansion.problem.structure();
+        let columns = &expansion.problem.direct.layout.columns;
+        let moving = (0..columns.len()).filter(|&field| {
+            let mut terms = structure.linear.iter();
+            terms.any(|t| t.jet.t > 0 && usize::from(t.jet.field) == field)
+        });
+        let size = |mode: &Mode, block: &Block| {
+            let values = &mode.values[block.offset..][..block.len];
             values.iter().map(|v| v.norm()).fold(0.0, f64::max)
         };
-        // A field that the fundamental leaves alone but for rounding has no such ratio.
-        let first = expansion.modes[&(1, 1)].values.iter().map(|v| v.norm());
-        let least = 1e-10 * first.fold(0.0, f64::max);
-        let present = moving.iter().filter(|block| size(&(1, 1), block) > least);
-        let ratios = present.map(|block| {
-            let later = keys.iter().map(|key| size(key, block)).fold(0.0, f64::max);
-            later / size(&(1, 1), block)
-        });
-        ratios.fold(0.0, f64::max)
-    };
-    let (second, third) = (ratio([(0, 2), (2, 2)]), ratio([(1, 3), (3, 3)]));
-    // The cubic term of the amplitude equation beside the slow rates.
-    let cubic = (expansion.landau[1].norm() / expansion.pair.scale).sqrt();
-    let reach = second.max(third.sqrt()).max(cubic);
-    if reach > 0.0 {
-        return 0.1 / reach;
-    }
-    let first = expansion.modes[&(1, 1)].values.iter().map(|v| v.norm());
-    0.1 / first.fold(1e-300, f64::max)
-}
-
-/// The largest residual of every balance (at its own points) and of every boundary condition.
-fn defects(expansion: &Expansion, amplitude: f64) -> Vec<Defect> {
-    let problem = expansion.problem;
-    let balances = problem.structure().balances.len();
-    let mut found = vec![Defect::default(); balances + problem.direct.walls.len()];
-    let mut widen = |row: usize, value: f64, size: f64| {
-        let defect: &mut Defect = &mut found[row];
-        defect.value = defect.value.max(value.abs());
-        defect.rounding = defect.rounding.max(f64::EPSILON * size);
-    };
-    let layout = &problem.direct.layout;
-    for (row, block) in layout.rows.iter().enumerate() {
-        let twin = layout.rows[..row].iter().any(|b| b.grid == block.grid);
-        if twin {
-            continue;
-        }
-        let id = ResidualId::Balances;
-        for value in residuals(expansion, amplitude, block.grid, id, balances) {
-            let same = layout.rows.iter().enumerate();
-            for (row, _) in same.filter(|(_, b)| b.grid == block.grid) {
-                widen(row, value[row].value, value[row].size);
+        let sum = |degree: usize, block: &Block| -> f64 {
+            let own = self.modes.iter().filter(|(m, _)| m.degree() == degree);
+            own.map(|(_, mode)| size(mode, block)).sum()
+        };
+        let all = columns
+            .iter()
+            .map(|block| sum(1, block))
+            .fold(0.0, f64::max);
+        let mut reach = 0.0_f64;
+        // Field by field: units do not matter. One that the modes leave alone but for rounding says nothing.
+        for block in moving.map(|field| &columns[field]) {
+            let first = sum(1, block);
+            for degree in (2..=expansion.order()).filter(|_| first > 1e-10 * all) {
+                let ratio = sum(degree, block) / first;
+                reach = reach.max(ratio.powf(1.0 / (degree - 1) as f64));
             }
         }
-    }
-    for (end, grid) in [(End::Lower, GridKind::Lower), (End::Upper, GridKind::Upper)] {
-        let id = ResidualId::Conditions(problem.base.case);
-        let count = problem.direct.walls.len();
-        if !problem.direct.walls.iter().any(|w| w.end == end) {
-            continue;
+        // The terms of the amplitude equations beside the slow rates.
+        for (equation, mode) in expansion.system.equations.iter().zip(&expansion.modes) {
+            for term in equation.iter().filter(|t| t.monomial.degree() > 1) {
+                let ratio = term.g.norm() / mode.pair.scale;
+                reach = reach.max(ratio.powf(1.0 / (term.monomial.degree() - 1) as f64));
+            }
         }
-        // The perturbation obeys B(X⁰ + X') − B(X⁰) = 0.
-        let with = residuals(expansion, amplitude, grid, id, count);
-        let without = residuals(expansion, 0.0, grid, id, count);
-        for (a, b) in with.iter().zip(&without) {
-            for (index, wall) in problem.direct.walls.iter().enumerate() {
-                if wall.end == end {
-                    let difference = a[index] - b[index];
-                    widen(balances + index, difference.value, difference.size);
+        if reach > 0.0 && reach.is_finite() {
+            reach
+        } else {
+            all.max(1e-300)
+        }
+    }
+
+    /// The amplitudes at which the defect is looked at: of one size, at phases that have nothing to do with
+    /// one another.
+    fn samples(&self, amplitude: f64) -> Vec<Vec<C64>> {
+        let n = self.expansion.modes.len();
+        let count = PHASES * (self.expansion.order() + 1) * n;
+        let sample = |i: usize| {
+            let phase = |j: usize| {
+                let turns = (i as f64 + 0.25) * ((j + 1) as f64).sqrt() / count as f64;
+                C64::from_polar(amplitude, 2.0 * std::f64::consts::PI * turns)
+            };
+            (0..n).map(phase).collect()
+        };
+        (0..count).map(sample).collect()
+    }
+
+    /// The largest residual of every balance (at its own points) and of every boundary condition.
+    fn defects(&self, amplitude: f64) -> Vec<Defect> {
+        let problem = self.expansion.problem;
+        let balances = problem.structure().balances.len();
+        let mut found = vec![Defect::default(); balances + problem.direct.walls.len()];
+        let mut widen = |row: usize, value: f64, size: f64| {
+            let defect: &mut Defect = &mut found[row];
+            defect.value = defect.value.max(value.abs());
+            defect.rounding = defect.rounding.max(f64::EPSILON * size);
+        };
+        let rows = || problem.direct.layout.rows.iter().enumerate();
+        let samples = self.samples(amplitude);
+        if let Some(kernel) = problem.model.residual(ResidualId::Balances) {
+            for on in self
+                .grids
+                .iter()
+                .filter(|on| rows().any(|(_, b)| b.grid == on.grid))
+            {
+                for value in self.residuals(kernel, on, &samples) {
+                    for (row, _) in rows().filter(|(_, b)| b.grid == on.grid) {
+                        widen(row, value[row].value, value[row].size);
+                    }
                 }
             }
         }
-    }
-    found
-}
-
-/// Residuals at all points of a grid and all phases.
-fn residuals(
-    expansion: &Expansion,
-    amplitude: f64,
-    grid: GridKind,
-    id: ResidualId,
-    count: usize,
-) -> Vec<Vec<WithRounding>> {
-    let problem = expansion.problem;
-    let jets = &problem.structure().residual_jets;
-    let points = Grid::new(grid).nodes;
-    let base: Vec<Vec<f64>> = points
-        .iter()
-        .map(|&xi| problem.base.point(problem.model, xi, expansion.k))
-        .collect();
-    // Each mode with the factor of its time derivative, A-dependence of the rates included.
-    let mut tables = Vec::new();
-    for (&(harmonic, order), mode) in &expansion.modes {
-        let rate = instantaneous_rate(expansion, amplitude, harmonic, order);
-        let mut moving = mode.clone();
-        moving.rate = mode.values.iter().map(|v| v * rate).collect();
-        let drifting = moving.rate.iter_mut().zip(&mode.drift);
-        drifting.for_each(|(rate, drift)| *rate += drift);
-        tables.push((
-            harmonic,
-            order,
-            moving.jets(problem, expansion.k, jets, grid),
-            moving.rounding(problem, expansion.k, jets, grid),
-        ));
-    }
-    let mut all = Vec::new();
-    for phase in 0..PHASES {
-        let theta = 2.0 * std::f64::consts::PI * (phase as f64 + 0.25) / PHASES as f64;
-        for (i, point) in base.iter().enumerate() {
-            let base = base_jets(problem, point, jets);
-            let mut x: Vec<WithRounding> = base.into_iter().map(WithRounding::from).collect();
-            for (harmonic, order, table, rounding) in &tables {
-                let size = amplitude.powi(*order as i32);
-                let turn = C64::from_polar(1.0, *harmonic as f64 * theta);
-                // X[0;m] stands once, the others with their conjugates.
-                let weight = if *harmonic == 0 { size } else { 2.0 * size };
-                for ((x, jet), size) in x.iter_mut().zip(table.at(i)).zip(&rounding[i]) {
-                    x.value += weight * (jet * turn).re;
-                    x.size += weight.abs() * size;
+        let case = ResidualId::Conditions(problem.base.case);
+        let Some(kernel) = problem.model.residual(case) else {
+            return found;
+        };
+        let still = self.samples(0.0);
+        for (end, grid) in [(End::Lower, GridKind::Lower), (End::Upper, GridKind::Upper)] {
+            for on in self.grids.iter().filter(|on| on.grid == grid) {
+                // The perturbation obeys B(X⁰ + X') − B(X⁰) = 0.
+                let with = self.residuals(kernel, on, &samples);
+                let without = self.residuals(kernel, on, &still);
+                for (a, b) in with.iter().zip(&without) {
+                    let walls = problem.direct.walls.iter().enumerate();
+                    for (index, _) in walls.filter(|(_, wall)| wall.end == end) {
+                        let difference = a[index] - b[index];
+                        widen(balances + index, difference.value, difference.size);
+                    }
                 }
             }
-            let mut out = vec![WithRounding::from(0.0); count];
-            problem
-                .model
-                .residual(id, point, ResidualCall::Rounding(&x, &mut out));
-            all.push(out);
         }
+        found
     }
-    all
+
+    /// Residuals at all points of a grid and all samples.
+    fn residuals(
+        &self,
+        kernel: &Kernel,
+        on: &OnGrid,
+        samples: &[Vec<C64>],
+    ) -> Vec<Vec<WithRounding>> {
+        let jets = &self.expansion.problem.structure().residual_jets;
+        let mut all = Vec::new();
+        for z in samples {
+            let moving = self.expansion.system.rates(z);
+            // z^p z̄^s stands with its conjugate, where that is another one.
+            let factors: Vec<(C64, C64, f64)> = self
+                .modes
+                .iter()
+                .map(|(m, _)| {
+                    let weight = if m.is_real() { 1.0 } else { 2.0 };
+                    (power(m, z), power_rate(m, z, &moving), weight)
+                })
+                .collect();
+            for (i, base) in on.base.iter().enumerate() {
+                let mut x: Vec<WithRounding> = base.iter().map(|&b| b.into()).collect();
+                for (tables, (value, rate, weight)) in on.tables.iter().zip(&factors) {
+                    for (j, (x, jet)) in x.iter_mut().zip(jets).enumerate() {
+                        let factor = if jet.t == 0 { value } else { rate };
+                        let drift = tables.drift.get(i).map_or(C64::new(0.0, 0.0), |d| d[j]);
+                        let own = tables.plain[i][j] * factor + drift * value;
+                        x.value += weight * own.re;
+                        x.size += weight
+                            * (tables.rounding[i][j] * factor.norm() + drift.norm() * value.norm());
+                    }
+                }
+                all.push(kernel.evaluate(&on.states[i], &x));
+            }
+        }
+        all
+    }
 }
 
-/// m (a0 + a2 A²) + i k (b0 + b2 A²)
-fn instantaneous_rate(expansion: &Expansion, amplitude: f64, harmonic: usize, order: usize) -> C64 {
-    let (mut a, mut b, mut power) = (0.0, 0.0, 1.0);
-    for c in &expansion.landau {
-        a += c.re * power;
-        b += c.im * power;
-        power *= amplitude * amplitude;
+impl Tables {
+    fn new(problem: &Problem, mode: &Mode, jets: &[Jet], grid: GridKind) -> Self {
+        let table = |mode: &Mode| -> Vec<Vec<C64>> {
+            let table = mode.jets(problem, jets, grid);
+            (0..grid.count()).map(|i| table.at(i).to_vec()).collect()
+        };
+        let mut own = mode.clone();
+        own.rate.clone_from(&mode.values);
+        let mut drifting = mode.clone();
+        drifting.values.fill(C64::new(0.0, 0.0));
+        drifting.uniform.fill(C64::new(0.0, 0.0));
+        drifting.rate.clone_from(&mode.drift);
+        Tables {
+            plain: table(&own),
+            rounding: own.rounding(problem, jets, grid),
+            drift: match mode.drift.is_empty() {
+                true => Vec::new(),
+                false => table(&drifting),
+            },
+        }
     }
-    C64::new(order as f64 * a, harmonic as f64 * b)
+}
+
+/// d/dt z^p z̄^s
+fn power_rate(monomial: &Monomial, z: &[C64], rates: &[C64]) -> C64 {
+    let n = z.len();
+    let mut total = C64::new(0.0, 0.0);
+    for j in 0..n {
+        let one = Monomial::amplitude(n, j);
+        if let Some(rest) = monomial.over(&one) {
+            total += f64::from(monomial.z[j]) * power(&rest, z) * rates[j];
+        }
+        if let Some(rest) = monomial.over(&one.conjugate()) {
+            total += f64::from(monomial.conj[j]) * power(&rest, z) * rates[j].conj();
+        }
+    }
+    total
 }
 
 /// The base state in the jets of the residual.

@@ -1,0 +1,242 @@
+//! Monomials z^p z̄^s, and the products of which each is made.
+//!
+//! What a series stands for is real, so that the coefficient of z^s z̄^p is the conjugate of that of z^p z̄^s: one
+//! of the two is stored.
+
+use std::collections::HashMap;
+
+/// Raised digits.
+const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+
+/// z^p z̄^s: the exponents of each amplitude, and of its conjugate.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Monomial {
+    pub z: Vec<u8>,
+    pub conj: Vec<u8>,
+}
+
+impl Monomial {
+    /// z^0
+    pub fn one(modes: usize) -> Self {
+        Monomial {
+            z: vec![0; modes],
+            conj: vec![0; modes],
+        }
+    }
+
+    /// z_j
+    pub fn amplitude(modes: usize, j: usize) -> Self {
+        let mut monomial = Monomial::one(modes);
+        monomial.z[j] = 1;
+        monomial
+    }
+
+    /// |p| + |s|
+    pub fn degree(&self) -> usize {
+        let exponents = self.z.iter().chain(&self.conj);
+        exponents.map(|&e| usize::from(e)).sum()
+    }
+
+    /// z^s z̄^p
+    pub fn conjugate(&self) -> Self {
+        Monomial {
+            z: self.conj.clone(),
+            conj: self.z.clone(),
+        }
+    }
+
+    /// Whether it is its own conjugate: a product of |z_j|².
+    pub fn is_real(&self) -> bool {
+        self.z == self.conj
+    }
+
+    /// p_j − s_j, by amplitude.
+    pub fn differences(&self) -> impl Iterator<Item = f64> {
+        let pairs = self.z.iter().zip(&self.conj);
+        pairs.map(|(&p, &s)| f64::from(p) - f64::from(s))
+    }
+
+    /// The product of two.
+    pub fn times(&self, other: &Monomial) -> Monomial {
+        let sum = |a: &[u8], b: &[u8]| a.iter().zip(b).map(|(a, b)| a + b).collect();
+        Monomial {
+            z: sum(&self.z, &other.z),
+            conj: sum(&self.conj, &other.conj),
+        }
+    }
+
+    /// Self / other, where other divides it.
+    pub fn over(&self, other: &Monomial) -> Option<Monomial> {
+        let difference = |a: &[u8], b: &[u8]| -> Option<Vec<u8>> {
+            a.iter().zip(b).map(|(a, b)| a.checked_sub(*b)).collect()
+        };
+        Some(Monomial {
+            z: difference(&self.z, &other.z)?,
+            conj: difference(&self.conj, &other.conj)?,
+        })
+    }
+
+    /// As it is written: z1² z̄2, the index left out where there is one amplitude.
+    pub fn name(&self) -> String {
+        let index = |j: usize| match self.z.len() {
+            1 => String::new(),
+            _ => (j + 1).to_string(),
+        };
+        let power = |exponent: u8| match exponent {
+            1 => String::new(),
+            exponent => exponent
+                .to_string()
+                .chars()
+                .map(|digit| SUPERSCRIPTS[digit.to_digit(10).unwrap_or(0) as usize])
+                .collect(),
+        };
+        let mut factors = Vec::new();
+        for (letter, exponents) in [("z", &self.z), ("z̄", &self.conj)] {
+            let present = exponents.iter().enumerate().filter(|(_, e)| **e > 0);
+            factors.extend(present.map(|(j, &e)| format!("{letter}{}{}", index(j), power(e))));
+        }
+        factors.join(" ")
+    }
+
+    /// All monomials of a degree, in order.
+    fn all(modes: usize, degree: usize) -> Vec<Monomial> {
+        fn fill(exponents: &mut Vec<u8>, left: usize, count: usize, found: &mut Vec<Vec<u8>>) {
+            if exponents.len() + 1 == count {
+                exponents.push(left as u8);
+                found.push(exponents.clone());
+                exponents.pop();
+                return;
+            }
+            for own in (0..=left).rev() {
+                exponents.push(own as u8);
+                fill(exponents, left - own, count, found);
+                exponents.pop();
+            }
+        }
+        let mut found = Vec::new();
+        fill(&mut Vec::new(), degree, 2 * modes, &mut found);
+        let split = |e: Vec<u8>| Monomial {
+            z: e[..modes].to_vec(),
+            conj: e[modes..].to_vec(),
+        };
+        found.into_iter().map(split).collect()
+    }
+}
+
+/// A stored coefficient, taken as it is or conjugate.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    pub degree: usize,
+    /// Among those of its degree.
+    pub index: usize,
+    pub conjugate: bool,
+}
+
+/// The stored monomials by degree.
+#[derive(Clone, Debug)]
+pub struct Monomials {
+    modes: usize,
+    stored: Vec<Vec<Monomial>>,
+    places: HashMap<Monomial, Place>,
+    /// By degree and stored monomial: all (β, γ) with β γ = α and neither of degree 0.
+    products: Vec<Vec<Vec<(Place, Place)>>>,
+}
+
+impl Monomials {
+    /// Those of degree 0 in the amplitudes of `modes` modes.
+    pub fn new(modes: usize) -> Self {
+        let mut monomials = Monomials {
+            modes,
+            stored: Vec::new(),
+            places: HashMap::new(),
+            products: Vec::new(),
+        };
+        monomials.extend();
+        monomials
+    }
+
+    /// Number of amplitudes.
+    pub fn modes(&self) -> usize {
+        self.modes
+    }
+
+    /// The highest degree.
+    pub fn degree(&self) -> usize {
+        self.stored.len() - 1
+    }
+
+    /// The stored monomials of one degree.
+    pub fn of(&self, degree: usize) -> &[Monomial] {
+        &self.stored[degree]
+    }
+
+    /// Where a monomial's coefficient is.
+    pub fn place(&self, monomial: &Monomial) -> Option<Place> {
+        self.places.get(monomial).copied()
+    }
+
+    /// The products that make one stored monomial, factors of degree 0 left out.
+    pub fn products(&self, degree: usize, index: usize) -> &[(Place, Place)] {
+        &self.products[degree][index]
+    }
+
+    /// One degree more.
+    pub fn extend(&mut self) {
+        let degree = self.stored.len();
+        let all = Monomial::all(self.modes, degree);
+        let mut stored: Vec<Monomial> = Vec::new();
+        for monomial in all.iter().filter(|m| m.z >= m.conj) {
+            let place = Place {
+                degree,
+                index: stored.len(),
+                conjugate: false,
+            };
+            self.places.insert(monomial.clone(), place);
+            let mirrored = Place {
+                conjugate: true,
+                ..place
+            };
+            self.places.entry(monomial.conjugate()).or_insert(mirrored);
+            stored.push(monomial.clone());
+        }
+        let products: Vec<_> = stored.iter().map(|alpha| self.factorings(alpha)).collect();
+        self.products.push(products);
+        self.stored.push(stored);
+    }
+
+    fn factorings(&self, alpha: &Monomial) -> Vec<(Place, Place)> {
+        let mut found = Vec::new();
+        for degree in 1..alpha.degree() {
+            for beta in Monomial::all(self.modes, degree) {
+                if let Some(gamma) = alpha.over(&beta) {
+                    found.push((self.places[&beta], self.places[&gamma]));
+                }
+            }
+        }
+        found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Monomials;
+
+    /// z^p z̄^s has Π (p + 1)(s + 1) divisors, itself and 1 among them.
+    #[test]
+    fn every_product_once() {
+        let mut monomials = Monomials::new(2);
+        for _ in 0..5 {
+            monomials.extend();
+        }
+        for degree in 1..=5 {
+            for (index, alpha) in monomials.of(degree).iter().enumerate() {
+                let exponents = alpha.z.iter().chain(&alpha.conj);
+                let divisors: usize = exponents.map(|&e| usize::from(e) + 1).product();
+                assert_eq!(monomials.products(degree, index).len(), divisors - 2);
+            }
+        }
+        // C(2n + d − 1, d) monomials of a degree, pairs of conjugates stored once.
+        assert_eq!(monomials.of(2).len(), (10 + 2) / 2);
+        assert_eq!(monomials.of(3).len(), 20 / 2);
+    }
+}

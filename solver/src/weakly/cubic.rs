@@ -1,0 +1,301 @@
+//! The Landau point: c0, c2 and what belongs to them at one wavenumber, by the derived forms N2 and N3.
+//!
+//! X' = A X e^{iθ} + c.c. + A² (X[0;2] + X[2;2] e^{2iθ} + c.c.) + …,  dA/dt = a0 A + a2 A³,  dθ/dt = b0 + b2 A²,
+//! P (3.13)–(3.16):
+//!
+//! [2 a0 M0 − L_0] X[0;2] = 2 N2(X, X̄)
+//! [2 c0 M0 − L_2k] X[2;2] = N2(X, X)
+//! c2 = ⟨Y, 2 N2(X, X[0;2]) + 2 N2(X̄, X[2;2]) + 3 N3(X, X, X̄)⟩ / ⟨Y, M0 X⟩, P (3.22)
+
+use super::bifurcation::{Bifurcation, equilibrium};
+use super::mode::{JetTable, Mode};
+use super::response::{Multiplier, Question, Response, arithmetic};
+use crate::collocation::GridKind;
+use crate::dense::dot;
+use crate::error::{Error, Result};
+use crate::model::{C64, End, Jet};
+use crate::problem::Problem;
+use crate::spectrum::{self, EigenPair};
+
+/// Which mode is meant.
+#[derive(Clone, Copy, Debug)]
+pub enum Selection<'a> {
+    /// The one of largest growth rate.
+    Leading,
+    /// The one nearest to an eigenvalue.
+    Near(C64),
+    /// The continuation of a mode known nearby.
+    Like(&'a EigenPair),
+}
+
+/// c0 and c2 with the modes up to second order.
+pub struct LandauPoint<'p, 'm> {
+    pub problem: &'p Problem<'m>,
+    pub pair: EigenPair,
+    pub c0: C64,
+    pub c2: C64,
+    /// What c2 is the sum of: 2 N2(X, X[0;2]), 2 N2(X̄, X[2;2]), 3 N3(X, X, X̄), projected.
+    pub contributions: [C64; 3],
+    /// X[1;1], normalised.
+    pub fundamental: Mode,
+    /// X[0;2]
+    pub mean: Mode,
+    /// X[2;2]
+    pub second: Mode,
+    /// Multipliers of the closures at k = 0.
+    pub multipliers: Vec<Multiplier>,
+    responses: [Response; 2],
+}
+
+/// The Landau point of a selected mode.
+///
+/// # Errors
+/// A mode that is not found, a resonance.
+pub fn point<'p, 'm>(
+    problem: &'p Problem<'m>,
+    k: f64,
+    selection: Selection,
+) -> Result<LandauPoint<'p, 'm>> {
+    from_pair(problem, select(problem, k, selection)?)
+}
+
+/// The selected mode.
+///
+/// # Errors
+/// A mode that is not found.
+pub fn select(problem: &Problem, k: f64, selection: Selection) -> Result<EigenPair> {
+    match selection {
+        Selection::Leading => spectrum::leading(problem, k),
+        Selection::Near(target) => spectrum::nearest(problem, k, target),
+        Selection::Like(pair) => spectrum::follow(problem, k, pair),
+    }
+}
+
+/// The point that continues `near`: three factorisations.
+///
+/// # Errors
+/// As [`point`].
+pub fn warm_point<'p, 'm>(
+    problem: &'p Problem<'m>,
+    k: f64,
+    near: &EigenPair,
+) -> Result<LandauPoint<'p, 'm>> {
+    point(problem, k, Selection::Like(near))
+}
+
+/// The point of a known mode.
+///
+/// # Errors
+/// A resonance.
+pub fn from_pair<'p, 'm>(problem: &'p Problem<'m>, pair: EigenPair) -> Result<LandauPoint<'p, 'm>> {
+    let fundamental = fundamental(problem, &pair)?;
+    let respond = |q: f64, shift: C64, forcing: Vec<C64>| {
+        let question = Question {
+            q,
+            shift,
+            forcing,
+            arithmetic: arithmetic(problem, &[pair.c]),
+            is_real: q == 0.0,
+            borders: &[],
+        };
+        question
+            .answer(problem)
+            .ok_or_else(|| singular(pair.k, q == 0.0))
+    };
+    let x = Factor::new(problem, fundamental.clone());
+    let conjugate = x.conjugate();
+    let forcing = product(problem, &[&x, &conjugate], 2.0);
+    let mean = respond(0.0, C64::new(2.0 * pair.c.re, 0.0), forcing)?;
+    let forcing = product(problem, &[&x, &x], 1.0);
+    let second = respond(2.0 * pair.k, 2.0 * pair.c, forcing)?;
+    let x02 = Factor::new(problem, mean.mode.clone());
+    let x22 = Factor::new(problem, second.mode.clone());
+    let third = [
+        product(problem, &[&x, &x02], 2.0),
+        product(problem, &[&conjugate, &x22], 2.0),
+        product(problem, &[&x, &x, &conjugate], 3.0),
+    ];
+    let mass_x = problem
+        .mass::<C64>(pair.k)
+        .apply(&problem.solver_basis(&fundamental.values));
+    let below = dot(&pair.left, &mass_x);
+    let contributions = third.map(|forcing| dot(&pair.left, &forcing) / below);
+    let multiplier = |(closure, relative, vanishes): &(String, f64, bool)| Multiplier {
+        closure: closure.clone(),
+        order: 2,
+        relative: *relative,
+        vanishes: *vanishes,
+    };
+    Ok(LandauPoint {
+        problem,
+        c0: pair.c,
+        c2: contributions.iter().sum(),
+        contributions,
+        fundamental,
+        mean: mean.mode.clone(),
+        second: second.mode.clone(),
+        multipliers: mean.closures.iter().map(multiplier).collect(),
+        responses: [mean, second],
+        pair,
+    })
+}
+
+/// The eigenvector as the spec normalises it, with its rate c X.
+///
+/// # Errors
+/// A mode that the spec's normalisation does not fit.
+pub fn fundamental(problem: &Problem, pair: &EigenPair) -> Result<Mode> {
+    let values = problem.physical(&pair.right);
+    let factor = super::normalise(problem, pair.k, &values)?;
+    let values: Vec<C64> = values.into_iter().map(|v| v * factor).collect();
+    Ok(Mode {
+        q: pair.k,
+        rate: values.iter().map(|v| v * pair.c).collect(),
+        values,
+        drift: Vec::new(),
+        uniform: Vec::new(),
+    })
+}
+
+fn singular(k: f64, mean: bool) -> Error {
+    Error::computation(if mean {
+        "the problem for X[0;2] is singular, a mean is left open: the block `mean` accepts `gauge` for a field that \
+         is determined up to a constant and `conserved` for an integral that does not change"
+            .to_owned()
+    } else {
+        format!(
+            "the problem for X[2;2] is singular, a resonance at k = {k}: try a wavenumber beside it, or include the \
+             mode that is met: `landau amplitudes` with --mode k={k} --mode k={}",
+            2.0 * k
+        )
+    })
+}
+
+impl LandauPoint<'_, '_> {
+    /// The wavenumber.
+    pub fn k(&self) -> f64 {
+        self.pair.k
+    }
+
+    /// How far the problems of X[0;2] and X[2;2] are from singularity.
+    pub fn distances(&self) -> [f64; 2] {
+        [0, 1].map(|i| self.responses[i].distance(self.problem))
+    }
+
+    /// Σ |contribution to c2|: what its rounding errors are relative to.
+    pub fn size(&self) -> f64 {
+        self.contributions.iter().map(|c| c.norm()).sum()
+    }
+
+    /// A_e² = −a0/a2 where that is positive, P (4.1).
+    pub fn amplitude(&self) -> Option<f64> {
+        let floor = self.rounding();
+        equilibrium((self.c0, floor[0]), (self.c2, floor[1]))
+    }
+
+    /// The kind of bifurcation, rounding set aside.
+    pub fn bifurcation(&self) -> Bifurcation {
+        let floor = self.rounding();
+        Bifurcation::new((self.c0, floor[0]), (self.c2, floor[1]))
+    }
+
+    /// What rounding leaves undecided of c0 and c2 at least.
+    pub fn rounding(&self) -> [f64; 2] {
+        let scale = self.pair.scale.max(self.c0.norm());
+        [1e-14 * scale, 1e-14 * self.size()]
+    }
+}
+
+/// A mode that takes part in products, with its jets on the grids of all balances.
+struct Factor {
+    mode: Mode,
+    tables: Vec<(GridKind, JetTable)>,
+}
+
+impl Factor {
+    fn new(problem: &Problem, mode: Mode) -> Self {
+        let jets = &problem.structure().form_jets;
+        let mut tables: Vec<(GridKind, JetTable)> = Vec::new();
+        for block in &problem.direct.layout.rows {
+            if !tables.iter().any(|(grid, _)| *grid == block.grid) {
+                tables.push((block.grid, mode.jets(problem, jets, block.grid)));
+            }
+        }
+        Factor { mode, tables }
+    }
+
+    fn conjugate(&self) -> Self {
+        let tables = self.tables.iter();
+        Factor {
+            mode: self.mode.conjugate(),
+            tables: tables.map(|(grid, t)| (*grid, t.conjugate())).collect(),
+        }
+    }
+
+    fn on(&self, grid: GridKind) -> Option<&JetTable> {
+        let own = self.tables.iter().find(|(kind, _)| *kind == grid);
+        own.map(|(_, table)| table)
+    }
+}
+
+/// `multiplicity` · N_d of d modes, in the balances and in the data of the boundary conditions, in the solver's basis.
+fn product(problem: &Problem, factors: &[&Factor], multiplicity: f64) -> Vec<C64> {
+    let degree = factors.len();
+    let structure = problem.structure();
+    let mut right = vec![C64::new(0.0, 0.0); problem.direct.layout.size];
+    if degree > structure.order {
+        return right;
+    }
+    for (row, block) in problem.direct.layout.rows.iter().enumerate() {
+        if !structure.forms[degree - 2][row] {
+            continue;
+        }
+        let tables: Vec<&JetTable> = factors.iter().filter_map(|f| f.on(block.grid)).collect();
+        let turn = problem.direct.row_factor(row) * multiplicity;
+        for (i, c) in problem.nonlinear[row].iter().enumerate() {
+            let arguments: [&[C64]; 3] =
+                std::array::from_fn(|a| tables.get(a).map_or(&[][..], |t| t.at(i)));
+            let value = problem.model.form(degree, row, c, &arguments[..degree]);
+            right[block.offset + i] += turn * value;
+        }
+    }
+    for (index, wall) in problem.direct.walls.iter().enumerate() {
+        let terms = wall.nonlinear.iter().filter(|(m, _)| m.len() == degree);
+        let end = match wall.end {
+            End::Lower => GridKind::Lower,
+            End::Upper => GridKind::Upper,
+        };
+        // 0 = W x + N(x): a row of L, and its data beside those of the balances.
+        for (monomial, coefficient) in terms {
+            let value = symmetric_product(problem, factors, monomial, end) * *coefficient;
+            let position = problem.direct.layout.walls + index;
+            right[position] += problem.direct.wall_factor(wall) * value * multiplicity;
+        }
+    }
+    right
+}
+
+/// 1/d! Σ over permutations of Π jets at one end.
+fn symmetric_product(
+    problem: &Problem,
+    factors: &[&Factor],
+    monomial: &[Jet],
+    end: GridKind,
+) -> C64 {
+    fn sum(values: &[Vec<C64>], position: usize, used: u32) -> C64 {
+        if position == values.len() {
+            return C64::new(1.0, 0.0);
+        }
+        let open = (0..values.len()).filter(|i| used >> i & 1 == 0);
+        open.map(|i| values[position][i] * sum(values, position + 1, used | 1 << i))
+            .sum()
+    }
+    let at_end = |jet: Jet| {
+        factors
+            .iter()
+            .map(move |f| f.mode.jet(problem, jet, end)[0])
+    };
+    let values: Vec<Vec<C64>> = monomial.iter().map(|&jet| at_end(jet).collect()).collect();
+    let factorial: f64 = (1..=factors.len()).map(|i| i as f64).product();
+    sum(&values, 0, 0) / factorial
+}

@@ -1,0 +1,169 @@
+//! What a forcing makes of the linear problem: [σ M0 − L_q] X = G, bordered where the wavenumber is that of a mode
+//! with an amplitude of its own, closed where it is zero.
+
+use super::mode::Mode;
+use crate::dense::{Scalar, bordered, norm, scalars};
+use crate::model::{C64, ClosureKind};
+use crate::problem::{Problem, Solver, quarter_turn};
+use crate::series::Arithmetic;
+
+/// The multiplier of a closure of a mean mode.
+#[derive(Clone, Debug)]
+pub struct Multiplier {
+    /// What is closed, in words.
+    pub closure: String,
+    pub order: usize,
+    /// Its size in the balances over that of the forcing.
+    pub relative: f64,
+    /// Whether it has to vanish.
+    pub vanishes: bool,
+}
+
+/// A linear problem with its forcing, in the solver's basis.
+pub struct Question<'a> {
+    /// Its wavenumber.
+    pub q: f64,
+    /// σ
+    pub shift: C64,
+    /// G with the boundary data.
+    pub forcing: Vec<C64>,
+    /// How the modes with amplitudes are kept.
+    pub arithmetic: Arithmetic,
+    /// Whether it is the coefficient of a product of |z_j|²: its own conjugate.
+    pub is_real: bool,
+    /// Column M0 φ and row M0ᴴ ψ of every mode whose amplitude equation takes part.
+    pub borders: &'a [(Vec<C64>, Vec<C64>)],
+}
+
+/// The answer.
+pub struct Response {
+    /// X with the rate σ X and what drifts.
+    pub mode: Mode,
+    /// One coefficient a border.
+    pub coefficients: Vec<C64>,
+    /// Of the closures that are no unknowns of the model, by position among the borders of the problem.
+    pub closures: Vec<(String, f64, bool)>,
+    solver: AnySolver,
+}
+
+/// A factorised problem in either arithmetic.
+enum AnySolver {
+    Real(Solver<f64>),
+    Complex(Solver<C64>),
+}
+
+/// Scalars whose factorised problems can be kept side by side.
+trait Kept: Scalar {
+    fn kept(solver: Solver<Self>) -> AnySolver;
+}
+
+impl Kept for f64 {
+    fn kept(solver: Solver<f64>) -> AnySolver {
+        AnySolver::Real(solver)
+    }
+}
+
+impl Kept for C64 {
+    fn kept(solver: Solver<C64>) -> AnySolver {
+        AnySolver::Complex(solver)
+    }
+}
+
+/// In a model with the mirror symmetry every mode of a steady pattern, its own mirror image, is a real vector of the
+/// solver's basis. A wave is not, and drives a mean flow along x.
+pub fn arithmetic(problem: &Problem, rates: &[C64]) -> Arithmetic {
+    if problem.is_real() && rates.iter().all(|c| c.im == 0.0) {
+        Arithmetic::Real
+    } else {
+        Arithmetic::Complex
+    }
+}
+
+impl Question<'_> {
+    /// Solves the problem; nothing where it is singular.
+    pub fn answer(self, problem: &Problem) -> Option<Response> {
+        // Without the mirror a mean that is its own conjugate is real in the basis of the fields themselves.
+        let plain_mean = self.q == 0.0 && self.is_real && !problem.is_real();
+        if self.arithmetic == Arithmetic::Real || plain_mean {
+            self.answer_as::<f64>(problem)
+        } else {
+            self.answer_as::<C64>(problem)
+        }
+    }
+
+    fn answer_as<T: Kept>(self, problem: &Problem) -> Option<Response> {
+        let n = problem.direct.layout.size;
+        let matrix = problem.shifted::<T>(self.q, self.shift);
+        let closed = matrix.nrows();
+        let mut right: Vec<T> = scalars(&self.forcing);
+        right.resize(closed + self.borders.len(), T::zero_impl());
+        // The mean of a steady pattern has no odd part.
+        let even = self.q == 0.0 && self.is_real && self.arithmetic == Arithmetic::Real;
+        let solver = match problem.even_part().filter(|_| even) {
+            Some(part) => Solver::even(&matrix, part),
+            None if self.borders.is_empty() => Solver::whole(matrix),
+            None => {
+                let scalar = |x: &Vec<C64>| -> Vec<T> {
+                    let mut x: Vec<T> = scalars(x);
+                    x.resize(closed, T::zero_impl());
+                    x
+                };
+                let borders = self.borders.iter();
+                let borders: Vec<_> = borders.map(|(c, r)| (scalar(c), scalar(r))).collect();
+                Solver::whole(bordered(&matrix, &borders))
+            }
+        };
+        let solution = solver.solve(&right)?;
+        let mut closures = Vec::new();
+        let size = norm(&self.forcing);
+        let mut drift = Vec::new();
+        let profiles = problem.direct.layout.columns.len();
+        let fields = problem.structure().fields.len();
+        let mut uniform = vec![C64::new(0.0, 0.0); fields - profiles];
+        for (border, value) in problem.borders.iter().zip(&solution[n..closed]) {
+            let share = norm(&border.column) * value.size();
+            let relative = if share == 0.0 { 0.0 } else { share / size };
+            if border.kind != ClosureKind::Unknown {
+                let vanishes = border.kind != ClosureKind::Drift;
+                closures.push((border.name.clone(), relative, vanishes));
+            }
+            let Some(field) = border.field else { continue };
+            let turn = quarter_turn(problem.direct.column_turn(field));
+            let value = value.complex() * turn * border.unit;
+            match border.kind {
+                ClosureKind::Unknown => uniform[field - profiles] = value,
+                ClosureKind::Drift => {
+                    let block = &problem.direct.layout.columns[field];
+                    drift.resize(n, C64::new(0.0, 0.0));
+                    drift[block.offset..][..block.len].fill(value);
+                }
+                ClosureKind::Conserved | ClosureKind::Claimed | ClosureKind::Gauge => {}
+            }
+        }
+        let values = problem.physical(&solution[..n]);
+        let mut rate: Vec<C64> = values.iter().map(|v| v * self.shift).collect();
+        rate.iter_mut().zip(&drift).for_each(|(r, d)| *r += d);
+        Some(Response {
+            mode: Mode {
+                q: self.q,
+                values,
+                rate,
+                drift,
+                uniform,
+            },
+            coefficients: solution[closed..].iter().map(|c| c.complex()).collect(),
+            closures,
+            solver: T::kept(solver),
+        })
+    }
+}
+
+impl Response {
+    /// How far the problem is from singularity: the distance of σ from the spectrum of L_q.
+    pub fn distance(&self, problem: &Problem) -> f64 {
+        match &self.solver {
+            AnySolver::Real(solver) => solver.distance(&problem.mass(self.mode.q)),
+            AnySolver::Complex(solver) => solver.distance(&problem.mass(self.mode.q)),
+        }
+    }
+}

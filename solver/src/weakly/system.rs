@@ -1,0 +1,99 @@
+//! Amplitude equations: dz_j/dt = Σ g z^p z̄^s.
+
+use crate::model::C64;
+use crate::series::Monomial;
+
+/// One term of an amplitude equation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    pub monomial: Monomial,
+    pub g: C64,
+}
+
+/// dz_j/dt = Σ over `equations[j]`, linear terms first, by degree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AmplitudeSystem {
+    pub equations: Vec<Vec<Term>>,
+}
+
+impl AmplitudeSystem {
+    /// dz_j/dt = c_j z_j
+    pub fn linear(rates: &[C64]) -> Self {
+        let equation = |(j, &g): (usize, &C64)| {
+            let monomial = Monomial::amplitude(rates.len(), j);
+            vec![Term { monomial, g }]
+        };
+        AmplitudeSystem {
+            equations: rates.iter().enumerate().map(equation).collect(),
+        }
+    }
+
+    /// Number of amplitudes.
+    pub fn modes(&self) -> usize {
+        self.equations.len()
+    }
+
+    /// The coefficient of a monomial in the equation of z_j.
+    pub fn coefficient(&self, j: usize, monomial: &Monomial) -> Option<C64> {
+        let term = self.equations[j].iter().find(|t| t.monomial == *monomial);
+        term.map(|t| t.g)
+    }
+
+    /// The highest degree.
+    pub fn order(&self) -> usize {
+        let degrees = self.equations.iter().flatten().map(|t| t.monomial.degree());
+        degrees.max().unwrap_or(1)
+    }
+
+    /// The terms of some degrees alone.
+    pub fn part(&self, degrees: std::ops::RangeInclusive<usize>) -> Self {
+        let kept = |equation: &Vec<Term>| {
+            let terms = equation.iter();
+            let kept = terms.filter(|t| degrees.contains(&t.monomial.degree()));
+            kept.cloned().collect()
+        };
+        AmplitudeSystem {
+            equations: self.equations.iter().map(kept).collect(),
+        }
+    }
+
+    /// dz/dt
+    pub fn rates(&self, z: &[C64]) -> Vec<C64> {
+        let value = |term: &Term| term.g * power(&term.monomial, z);
+        let sum = |equation: &Vec<Term>| equation.iter().map(value).sum();
+        self.equations.iter().map(sum).collect()
+    }
+
+    /// ∂(dz_i/dt)/∂z_j and ∂(dz_i/dt)/∂z̄_j.
+    pub fn slopes(&self, z: &[C64]) -> [Vec<Vec<C64>>; 2] {
+        let n = z.len();
+        let mut slopes = [0, 1].map(|_| vec![vec![C64::new(0.0, 0.0); n]; n]);
+        for (i, term) in self
+            .equations
+            .iter()
+            .enumerate()
+            .flat_map(|(i, e)| e.iter().map(move |t| (i, t)))
+        {
+            for j in 0..n {
+                let one = Monomial::amplitude(n, j);
+                for (side, factor, exponent) in [
+                    (0, one.clone(), term.monomial.z[j]),
+                    (1, one.conjugate(), term.monomial.conj[j]),
+                ] {
+                    if let Some(rest) = term.monomial.over(&factor) {
+                        slopes[side][i][j] += term.g * f64::from(exponent) * power(&rest, z);
+                    }
+                }
+            }
+        }
+        slopes
+    }
+}
+
+/// z^p z̄^s
+pub fn power(monomial: &Monomial, z: &[C64]) -> C64 {
+    let factor =
+        |((z, &p), &s): ((&C64, &u8), &u8)| z.powi(i32::from(p)) * z.conj().powi(i32::from(s));
+    let exponents = z.iter().zip(&monomial.z).zip(&monomial.conj);
+    exponents.map(factor).product()
+}
