@@ -6,7 +6,7 @@ use landau_solver::Model;
 use landau_solver::collocation::Discretisation;
 use landau_solver::problem::Problem;
 use landau_solver::study::Setup;
-use landau_solver::weakly::{Selection, point, warm_point};
+use landau_solver::weakly::{Expansion, Selection, point, select, warm_point};
 use std::path::Path;
 
 fn warm(criterion: &mut Criterion, name: &str, model: &dyn Model) {
@@ -22,6 +22,29 @@ fn warm(criterion: &mut Criterion, name: &str, model: &dyn Model) {
     });
 }
 
+/// Coefficients of higher orders, and of a pair of modes: the modes known, everything else anew.
+fn series(criterion: &mut Criterion, model: &dyn Model) {
+    let setup = Setup::new(model, 50);
+    let base = setup.base(None).expect("a base state");
+    let discretisation = Discretisation::new();
+    let problem = Problem::new(model, &base, &discretisation, 50).expect("a problem");
+    let pair = |k: f64| select(&problem, k, Selection::Leading).expect("a mode");
+    let cases = [
+        ("order 5", vec![pair(0.16)], 5),
+        ("order 7", vec![pair(0.16)], 7),
+        ("order 9", vec![pair(0.16)], 9),
+        ("a pair at order 3", vec![pair(0.054), pair(0.108)], 3),
+    ];
+    for (name, pairs, order) in cases {
+        criterion.bench_function(&format!("warm {name}, M = 50"), |b| {
+            b.iter(|| {
+                let expansion = Expansion::to(&problem, pairs.clone(), order - 1);
+                expansion.expect("the expansion").last_coefficients()
+            });
+        });
+    }
+}
+
 fn benches(criterion: &mut Criterion) {
     faer::set_global_parallelism(faer::Par::Seq);
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../spec/models");
@@ -35,6 +58,7 @@ fn benches(criterion: &mut Criterion) {
         "warm Landau point, M = 50, emitted",
         bed.as_ref(),
     );
+    series(criterion, bed.as_ref());
     let sources = read_sources(&folder.join("vibrated_bed.model")).expect("the spec");
     let tape = landau_codegen::tape(&sources).expect("a well-formed spec");
     warm(criterion, "warm Landau point, M = 50, tape", &tape);

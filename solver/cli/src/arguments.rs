@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use landau_solver::model::C64;
+use landau_solver::study::amplitudes::ModeChoice;
 use std::path::PathBuf;
 
 /// From balance equations to amplitude equations.
@@ -63,7 +64,7 @@ pub enum Command {
     },
     /// Landau coefficients, kind of bifurcation, amplitude, error, resonances at one wavenumber.
     #[command(
-        after_help = "Example: landau point my.model --k 0.16\n         landau point my.model --k 1 --set r=0.1 --json"
+        after_help = "Example: landau point my.model --k 0.16\n         landau point my.model --k 1 --set r=0.1 --json\n         landau point my.model --k 0.16 --order 7"
     )]
     Point {
         /// A built model, or the path of a .model file.
@@ -71,7 +72,24 @@ pub enum Command {
         /// Wavenumber; the model's typical one by default.
         #[arg(long, allow_negative_numbers = true)]
         k: Option<f64>,
-        /// Order of the expansion: 3 gives c2.
+        /// Order of the expansion: 3 gives c2, 5 c4, and so on.
+        #[arg(long, default_value_t = 3)]
+        order: usize,
+        #[command(flatten)]
+        common: Common,
+    },
+    /// Amplitude equations of several modes: coefficients, equilibria with their stability, certificate.
+    #[command(
+        after_help = "Examples:\n  landau amplitudes my.model --mode k=0.054 --mode k=0.108\n  landau amplitudes my.model --mode k=1 --mode k=-1 --order 5\n  landau amplitudes my.model --mode k=1,near=0 --mode k=1,near=0:2 --json\n\nWaves to the right and to the left are modes at k and −k."
+    )]
+    Amplitudes {
+        /// A built model, or the path of a .model file.
+        model: String,
+        /// A mode with an amplitude of its own (repeatable): its wavenumber, and where it is not the leading one the
+        /// eigenvalue that it is near to.
+        #[arg(long = "mode", value_name = "k=K[,near=RE[:IM]]", required = true, value_parser = mode)]
+        modes: Vec<ModeChoice>,
+        /// Order of the expansion.
         #[arg(long, default_value_t = 3)]
         order: usize,
         #[command(flatten)]
@@ -258,6 +276,30 @@ fn complex(text: &str) -> Result<C64, String> {
         Some((re, im)) => Ok(C64::new(number(re)?, number(im)?)),
         None => Ok(C64::new(number(text)?, 0.0)),
     }
+}
+
+/// `k=K[,near=RE[:IM]]`
+fn mode(text: &str) -> Result<ModeChoice, String> {
+    let wrong =
+        |part: &str| format!("`{part}` is no part of a mode; --mode accepts k=K[,near=RE[:IM]]");
+    let number = |part: &str, text: &str| {
+        let value = text.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+        value.ok_or_else(|| wrong(part))
+    };
+    let (mut k, mut near) = (None, None);
+    for part in text.split(',') {
+        match part.trim().split_once('=') {
+            Some(("k", value)) => k = Some(number(part, value)?),
+            Some(("near", value)) => {
+                let (re, im) = value.split_once(':').unwrap_or((value, "0"));
+                near = Some(C64::new(number(part, re)?, number(part, im)?));
+            }
+            _ => return Err(wrong(part)),
+        }
+    }
+    let k =
+        k.ok_or_else(|| format!("`{text}` has no wavenumber; --mode accepts k=K[,near=RE[:IM]]"))?;
+    Ok(ModeChoice { k, near })
 }
 
 /// `NAME=A:B` or `NAME=A:B:N`

@@ -81,6 +81,14 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
         } => with_setup(library, &model, &common, |setup| {
             solve::point(setup, k, order, &common)
         }),
+        Command::Amplitudes {
+            model,
+            modes,
+            order,
+            common,
+        } => with_setup(library, &model, &common, |setup| {
+            solve::amplitudes(setup, &modes, order, &common)
+        }),
         Command::Critical {
             model,
             options,

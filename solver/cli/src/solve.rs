@@ -6,6 +6,7 @@ use crate::{interrupt, picture};
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{destination, write_whole};
 use landau_solver::model::C64;
+use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{Quantity, Question};
 use landau_solver::study::minimise::minimise;
 use landau_solver::study::point::PointReport;
@@ -122,13 +123,23 @@ pub fn spectrum(setup: &Setup, k: Option<f64>, common: &Common) -> Result<()> {
 }
 
 pub fn point(setup: &Setup, k: Option<f64>, order: usize, common: &Common) -> Result<()> {
-    if order != 3 {
-        return Err(Error::input(format!(
-            "--order {order} is not available: it accepts 3"
-        )));
-    }
     let (k, selection) = asked(setup, k, common)?;
-    let found = PointReport::compute(setup, k, selection)?;
+    let found = PointReport::compute(setup, k, selection, order)?;
+    if common.json {
+        say!("{}", found.json());
+    } else {
+        say!("{found}");
+    }
+    Ok(())
+}
+
+pub fn amplitudes(
+    setup: &Setup,
+    modes: &[ModeChoice],
+    order: usize,
+    common: &Common,
+) -> Result<()> {
+    let found = AmplitudesReport::compute(setup, modes, order)?;
     if common.json {
         say!("{}", found.json());
     } else {

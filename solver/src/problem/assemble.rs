@@ -95,17 +95,19 @@ impl LinearProblem {
         self.assemble(discretisation, scale, combination, symbol)
     }
 
-    /// d/dk of [`LinearProblem::matrix`] at k > 0.
-    pub fn wavenumber_derivative<T: Scalar>(
+    /// d^order/dk^order of [`LinearProblem::matrix`] at k ≠ 0.
+    fn wavenumber_derivative<T: Scalar>(
         &self,
         discretisation: &Discretisation,
         scale: f64,
         k: f64,
         combination: Combination,
+        order: i32,
     ) -> Mat<T> {
         let symbol = |jet: Jet, turn| {
             let power = f64::from(jet.x) + f64::from(jet.absx);
-            self.symbol(jet, k, turn) * (power / k)
+            let factor: f64 = (0..order).map(|i| (power - f64::from(i)) / k).product();
+            self.symbol(jet, k, turn) * factor
         };
         self.assemble(discretisation, scale, combination, symbol)
     }
@@ -237,6 +239,18 @@ impl Problem<'_> {
         let symbol = |jet, turn| self.direct.symbol(jet, k, turn);
         self.direct
             .blocks(self.discretisation, self.scale(), OPERATOR, &symbol)
+    }
+
+    /// d^order/dk^order of a combination of L and M0 at k ≠ 0.
+    pub fn wavenumber_derivative<T: Scalar>(
+        &self,
+        k: f64,
+        combination: Combination,
+        order: i32,
+    ) -> Mat<T> {
+        let (discretisation, scale) = (self.discretisation, self.scale());
+        self.direct
+            .wavenumber_derivative(discretisation, scale, k, combination, order)
     }
 
     /// The same for the adjoint problem.

@@ -2,6 +2,7 @@
 //! wave have: it drives a mean flow).
 
 use super::{Blocks, Problem};
+use crate::collocation::Block;
 use crate::dense::{Factorised, Scalar, norm, scaled};
 use crate::model::C64;
 use faer::Mat;
@@ -20,15 +21,9 @@ impl Problem<'_> {
     pub fn even_part(&self) -> Option<EvenPart> {
         let parity = self.structure().parity.as_ref()?;
         let layout = &self.direct.layout;
-        let even = |odd: &[bool], blocks: &[crate::collocation::Block]| -> Vec<usize> {
-            let blocks = odd.iter().zip(blocks).filter(|(odd, _)| !**odd);
-            blocks
-                .flat_map(|(_, b)| b.offset..b.offset + b.len)
-                .collect()
-        };
-        let unknowns = even(&parity.fields, &layout.columns);
+        let unknowns = positions(&parity.fields, &layout.columns, false);
         let mut columns = unknowns.clone();
-        let mut rows = even(&parity.rows, &layout.rows);
+        let mut rows = positions(&parity.rows, &layout.rows, false);
         for (index, wall) in self.direct.walls.iter().enumerate() {
             if self.direct.wall_turn(wall) == 0 {
                 rows.push(layout.walls + index);
@@ -42,6 +37,30 @@ impl Problem<'_> {
             }
         }
         (rows.len() == columns.len()).then_some(EvenPart { rows, columns })
+    }
+}
+
+/// Positions of the odd, or of the even, among blocks.
+fn positions(odd: &[bool], blocks: &[Block], which: bool) -> Vec<usize> {
+    let blocks = odd.iter().zip(blocks).filter(|(odd, _)| **odd == which);
+    blocks
+        .flat_map(|(_, b)| b.offset..b.offset + b.len)
+        .collect()
+}
+
+impl Problem<'_> {
+    /// Unknowns that change sign in the mirror, and equations that do.
+    pub fn odd_positions(&self) -> (Vec<usize>, Vec<usize>) {
+        let Some(parity) = &self.structure().parity else {
+            return (Vec::new(), Vec::new());
+        };
+        let layout = &self.direct.layout;
+        let unknowns = positions(&parity.fields, &layout.columns, true);
+        let mut equations = positions(&parity.rows, &layout.rows, true);
+        let walls = self.direct.walls.iter().enumerate();
+        let walls = walls.filter(|(_, wall)| self.direct.wall_turn(wall) == 1);
+        equations.extend(walls.map(|(index, _)| layout.walls + index));
+        (unknowns, equations)
     }
 }
 
@@ -100,6 +119,10 @@ impl<T: Scalar> Solver<T> {
         let mut sizes = Vec::with_capacity(POWERS);
         for _ in 0..POWERS {
             let size = norm(&x);
+            if size == 0.0 {
+                // Nothing has mass but what a border takes out.
+                return f64::INFINITY;
+            }
             sizes.push(size);
             let mut right = mass.apply(&scaled(&x, 1.0 / size));
             right.resize(self.size, T::zero_impl());

@@ -120,22 +120,44 @@ pub fn follow(problem: &Problem, k: f64, near: &EigenPair) -> Result<EigenPair> 
 /// # Errors
 /// Where the other collocation has no such mode.
 pub fn transferred(from: &Problem, pair: &EigenPair, to: &Problem) -> Result<EigenPair> {
+    let shape = interpolated(from, &pair.right, to);
+    let start = arbitrary(shape.len());
+    let shift = beside(pair.c, pair.scale);
+    match refine(to, pair.k, shift, pair.scale, &shape, &start) {
+        Some(found) if likeness(&shape, &found.right) > SAME_SHAPE => Ok(found),
+        _ => nearest(to, pair.k, pair.c),
+    }
+}
+
+/// A vector of one collocation at the points of another.
+pub fn interpolated(from: &Problem, values: &[C64], to: &Problem) -> Vec<C64> {
     let (old, new) = (&from.direct.layout, &to.direct.layout);
     let mut shape = vec![C64::new(0.0, 0.0); new.size];
     for (a, b) in old.columns.iter().zip(&new.columns) {
         let matrix = to.discretisation.matrix(a.grid, b.grid, 0);
         for (i, value) in shape[b.offset..][..b.len].iter_mut().enumerate() {
             *value = (0..a.len)
-                .map(|j| pair.right[a.offset + j] * matrix[(i, j)])
+                .map(|j| values[a.offset + j] * matrix[(i, j)])
                 .sum();
         }
     }
-    let start = arbitrary(new.size);
-    let shift = beside(pair.c, pair.scale);
-    match refine(to, pair.k, shift, pair.scale, &shape, &start) {
-        Some(found) if likeness(&shape, &found.right) > SAME_SHAPE => Ok(found),
-        _ => nearest(to, pair.k, pair.c),
-    }
+    shape
+}
+
+/// The mode at −k that is the mirror image of one at k, in a model with the symmetry.
+pub fn mirror_image(problem: &Problem, pair: &EigenPair) -> EigenPair {
+    let mut image = EigenPair {
+        k: -pair.k,
+        ..pair.clone()
+    };
+    let (unknowns, equations) = problem.odd_positions();
+    unknowns
+        .into_iter()
+        .for_each(|i| image.right[i] = -image.right[i]);
+    equations
+        .into_iter()
+        .for_each(|i| image.left[i] = -image.left[i]);
+    image
 }
 
 /// A vector that is orthogonal to none that matters.

@@ -1,6 +1,7 @@
 //! Studies: what is asked of a model beyond one Landau point.
 
 pub mod accuracy;
+pub mod amplitudes;
 pub mod critical;
 mod journal;
 pub use journal::journal_path;

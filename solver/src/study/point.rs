@@ -1,11 +1,17 @@
 //! A Landau point with everything that it rests on: what `point` prints.
 
 use super::accuracy::{Accuracy, Resonance, accuracy, resonance};
+use super::amplitudes::{HIGHEST, errors, small_divisors};
 use super::{Setup, check_wavenumber, sensitivity};
 use crate::base::BaseState;
 use crate::error::{Error, Result};
-use crate::model::C64;
-use crate::weakly::{Bifurcation, LandauPoint, Selection, equilibrium, outputs};
+use crate::model::{C64, ClosureKind};
+use crate::series::Monomial;
+use crate::spectrum::mirror_image;
+use crate::weakly::{
+    AmplitudeEquation, Bifurcation, Distance, Envelope, Expansion, LandauPoint, Selection, Stable,
+    Waves, equilibrium, outputs,
+};
 use crate::words;
 use serde_json::{Map, Value, json};
 use std::fmt;
@@ -41,6 +47,15 @@ pub struct PointReport {
     pub outputs: Vec<(String, [f64; 2])>,
     /// Name and dc0/d(parameter).
     pub dc0: Vec<(String, C64)>,
+    pub envelope: Envelope,
+    /// Whether a conserved mean couples to the envelope, whose equation then is not closed.
+    pub conserved_mean: bool,
+    /// Self and cross coefficient of a wave in a mirror-symmetric model.
+    pub waves: Option<Waves>,
+    /// c0, c2, c4, … to the order asked for, with their errors.
+    pub equation: AmplitudeEquation,
+    /// Solved problems that are as good as singular, in words.
+    pub small_divisors: Vec<String>,
 }
 
 impl PointReport {
@@ -49,13 +64,20 @@ impl PointReport {
     /// # Errors
     /// A mode that is not found, a resonance, a coefficient that is not converged, anything that is no
     /// finite number.
-    pub fn compute(setup: &Setup, k: f64, selection: Selection) -> Result<Self> {
+    pub fn compute(setup: &Setup, k: f64, selection: Selection, order: usize) -> Result<Self> {
         check_wavenumber(k)?;
+        if order.is_multiple_of(2) || !(3..=HIGHEST).contains(&order) {
+            return Err(Error::input(format!(
+                "--order {order} is not available: it accepts odd numbers from 3 to {HIGHEST}"
+            )));
+        }
         let base = setup.base(None)?;
-        setup.with_point(&base, k, selection, |point| Self::of(setup, &base, point))
+        setup.with_point(&base, k, selection, |point| {
+            Self::of(setup, &base, point, order)
+        })
     }
 
-    fn of(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Self> {
+    fn of(setup: &Setup, base: &BaseState, point: &LandauPoint, order: usize) -> Result<Self> {
         let structure = setup.model.structure();
         let resonance = resonance(point)?;
         check_distances(point, &resonance)?;
@@ -80,7 +102,15 @@ impl PointReport {
             slopes.push((name, slope));
         }
         let (c0, c2) = ((point.c0, error.c0), (point.c2, error.c2));
+        let (equation, small_divisors) = longer(setup, base, point, &error, order)?;
+        let mut closures = point.problem.borders.iter();
         Ok(PointReport {
+            envelope: Envelope::of(point.problem, &point.pair)?,
+            conserved_mean: closures
+                .any(|b| matches!(b.kind, ClosureKind::Conserved | ClosureKind::Claimed)),
+            waves: waves(setup, base, point)?,
+            equation,
+            small_divisors,
             model: structure.name.clone(),
             title: structure.title.clone(),
             parameters: words::parameters(setup, &base.parameters),
@@ -111,7 +141,7 @@ impl PointReport {
             .iter()
             .map(|(name, slope)| (name.clone(), words::complex(*slope)))
             .collect();
-        json!({
+        let mut object = json!({
             "model": self.model,
             "parameters": self.parameters,
             "k": self.k,
@@ -128,8 +158,105 @@ impl PointReport {
             },
             "outputs": outputs,
             "dc0": slopes,
-        })
+            "stable": self.stable(),
+            "radius": self.equation.radius(),
+            "small_divisors": self.small_divisors,
+            "envelope": {
+                "dc0_dk": words::complex(self.envelope.slope),
+                "d2c0_dk2": words::complex(self.envelope.curvature),
+                "group_velocity": words::number(self.envelope.group_velocity()),
+                "benjamin_feir": words::number(self.envelope.benjamin_feir(self.c2)),
+            },
+        });
+        let higher = self.equation.coefficients.iter().zip(&self.equation.errors);
+        for (n, (c, error)) in higher.enumerate().skip(2) {
+            object[format!("c{}", 2 * n)] = words::complex(*c);
+            object["error"][format!("c{}", 2 * n)] = words::number(*error);
+        }
+        let mut amplitudes: Map<String, Value> = self
+            .orders()
+            .map(|order| (order.to_string(), json!(self.equation.equilibrium(order))))
+            .collect();
+        amplitudes.insert("pade".to_owned(), json!(self.equation.pade()));
+        object["amplitudes"] = Value::Object(amplitudes);
+        if let Some(waves) = &self.waves {
+            object["waves"] = json!({
+                "self": words::complex(waves.own),
+                "cross": words::complex(waves.cross),
+                "error": words::number(waves.error),
+                "stable": waves.stable(),
+            });
+        }
+        object
     }
+
+    /// The orders of the amplitude equation.
+    fn orders(&self) -> impl Iterator<Item = usize> {
+        (3..=self.equation.order()).step_by(2)
+    }
+
+    /// Whether A_e attracts the amplitude: the slope of dA/dt there is negative.
+    fn stable(&self) -> Option<bool> {
+        self.amplitude.map(|_| self.c0.re > 0.0)
+    }
+}
+
+/// The amplitude equation to an order, and the solved problems that are as good as singular.
+fn longer(
+    setup: &Setup,
+    base: &BaseState,
+    point: &LandauPoint,
+    error: &Accuracy,
+    order: usize,
+) -> Result<(AmplitudeEquation, Vec<String>)> {
+    let mut equation = AmplitudeEquation {
+        coefficients: vec![point.c0, point.c2],
+        errors: vec![error.c0, error.c2],
+    };
+    let words = |distances: &[Distance]| -> Vec<String> {
+        let small = small_divisors(distances, slow_rate(point)).into_iter();
+        small.map(|d| d.in_words(&[point.k()])).collect()
+    };
+    if order == 3 {
+        let [mean, second] = point.distances();
+        let solved = [([1], [1], 0.0, mean), ([2], [0], 2.0 * point.k(), second)];
+        let distances = solved.map(|(z, conj, q, distance)| Distance {
+            monomial: Monomial {
+                z: z.to_vec(),
+                conj: conj.to_vec(),
+            },
+            q,
+            shift: 2.0 * point.c0,
+            distance,
+        });
+        return Ok((equation, words(&distances)));
+    }
+    let pairs = [point.pair.clone()];
+    let expansion = Expansion::to(point.problem, pairs.to_vec(), order - 1)?;
+    let words = words(&expansion.distances());
+    let system = expansion.last_coefficients();
+    let errors = errors(setup, base, point.problem, &pairs, &system)?;
+    for (term, error) in system.equations[0].iter().zip(&errors[0]).skip(2) {
+        let degree = term.monomial.degree();
+        let name = format!("c{}", degree - 1);
+        if !(*error <= UNCONVERGED * term.g.norm()) && !(*error <= CANCELLED * point.size()) {
+            return Err(unconverged(setup, &name, *error, term.g.norm()));
+        }
+        equation.coefficients.push(term.g);
+        equation.errors.push(*error);
+    }
+    Ok((equation, words))
+}
+
+/// Both coefficients of a wave in a mirror-symmetric model, with their error.
+fn waves(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Option<Waves>> {
+    if !point.problem.is_real() || point.c0.im == 0.0 {
+        return Ok(None);
+    }
+    let pairs = [point.pair.clone(), mirror_image(point.problem, &point.pair)];
+    let system = Expansion::to(point.problem, pairs.to_vec(), 2)?.last_coefficients();
+    let errors = errors(setup, base, point.problem, &pairs, &system)?;
+    Ok(Some(Waves::of(&system, &errors[0])))
 }
 
 /// What a distance from singularity is small or large against: the slow eigenvalues, or the terms of the slowest
@@ -174,23 +301,28 @@ fn check_errors(setup: &Setup, point: &LandauPoint, error: &Accuracy) -> Result<
         if error <= (UNCONVERGED * size).max(CANCELLED * sum) {
             continue;
         }
-        let how_far = match error.is_finite() {
-            true => format!(
-                "its error is {:.1} times its size",
-                error / size.max(1e-300)
-            ),
-            false => "another resolution has no such mode".to_owned(),
-        };
-        let advice = match setup.effective_resolution() {
-            0 => "parameters off this place".to_owned(),
-            m => format!("a larger M, such as -M {}", 2 * m),
-        };
-        return Err(Error::computation(format!(
-            "{name} is not converged at M = {}: {how_far}; try {advice}",
-            setup.resolution
-        )));
+        return Err(unconverged(setup, name, error, size));
     }
     Ok(())
+}
+
+/// What to say of a coefficient that is not converged.
+fn unconverged(setup: &Setup, name: &str, error: f64, size: f64) -> Error {
+    let how_far = match error.is_finite() {
+        true => format!(
+            "its error is {:.1} times its size",
+            error / size.max(1e-300)
+        ),
+        false => "another resolution has no such mode".to_owned(),
+    };
+    let advice = match setup.effective_resolution() {
+        0 => "parameters off this place".to_owned(),
+        m => format!("a larger M, such as -M {}", 2 * m),
+    };
+    Error::computation(format!(
+        "{name} is not converged at M = {}: {how_far}; try {advice}",
+        setup.resolution
+    ))
 }
 
 impl fmt::Display for PointReport {
@@ -215,6 +347,7 @@ impl fmt::Display for PointReport {
         } else {
             writeln!(f, "  no equilibrium at cubic order; normalised by {by}")?;
         }
+        self.write_orders(f)?;
         write!(f, "  distance to resonance: ")?;
         if self.resonance.mean_flow.is_finite() {
             write!(f, "mean flow {:.3e}, ", self.resonance.mean_flow)?;
@@ -225,6 +358,84 @@ impl fmt::Display for PointReport {
         }
         for (name, slope) in &self.dc0 {
             write!(f, "\n  dc0/d{name} = {}", shown(*slope))?;
+        }
+        self.write_envelope(f)?;
+        if let Some(waves) = &self.waves {
+            let verdict = match waves.stable() {
+                Stable::Neither => {
+                    "neither travelling nor standing waves are stable at cubic order".to_owned()
+                }
+                stable => format!("{stable} waves are stable"),
+            };
+            write!(
+                f,
+                "\n  waves: c2 is that of travelling waves; self {}, cross {}: {verdict}",
+                shown(waves.own),
+                shown(waves.cross)
+            )?;
+        }
+        for divisor in &self.small_divisors {
+            write!(f, "\n  {divisor}")?;
+        }
+        Ok(())
+    }
+}
+
+impl PointReport {
+    /// Coefficients and amplitudes beyond third order.
+    fn write_orders(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.equation.order() == 3 {
+            return Ok(());
+        }
+        let higher = self.equation.coefficients.iter().zip(&self.equation.errors);
+        for (n, (c, error)) in higher.enumerate().skip(2) {
+            let c = words::shown(words::settled(*c, *error));
+            writeln!(f, "  c{} = {c}   ± {error:.1e}", 2 * n)?;
+        }
+        let radius = self.equation.radius();
+        let judged = |amplitude: Option<f64>| match (amplitude, radius) {
+            (None, _) => "none".to_owned(),
+            (Some(a), Some(radius)) if a > radius => {
+                format!("{a:.8} (beyond the radius of convergence)")
+            }
+            (Some(a), _) => format!("{a:.8}"),
+        };
+        for order in self.orders() {
+            let amplitude = judged(self.equation.equilibrium(order));
+            writeln!(f, "  A_e at order {order}: {amplitude}")?;
+        }
+        writeln!(
+            f,
+            "  A_e of the Padé approximant: {}",
+            judged(self.equation.pade())
+        )?;
+        if let Some(radius) = radius {
+            writeln!(f, "  the series converges to about A = {radius:.4}")?;
+        }
+        Ok(())
+    }
+
+    fn write_envelope(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Envelope { slope, curvature } = self.envelope;
+        write!(
+            f,
+            "\n  envelope: dc0/dk = {}, d²c0/dk² = {}",
+            words::shown(slope),
+            words::shown(curvature)
+        )?;
+        if self.c0.im != 0.0 {
+            write!(
+                f,
+                "; group velocity {:.8}, Benjamin–Feir number {:.8}",
+                self.envelope.group_velocity(),
+                self.envelope.benjamin_feir(self.c2)
+            )?;
+        }
+        if self.conserved_mean {
+            write!(
+                f,
+                " (a conserved mean couples in: the envelope needs an equation for it)"
+            )?;
         }
         Ok(())
     }

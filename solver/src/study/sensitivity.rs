@@ -133,12 +133,7 @@ pub fn wavenumber(problem: &Problem, pair: &EigenPair) -> C64 {
         operator: C64::new(1.0, 0.0),
         walls: 1.0,
     };
-    let derivative = problem.direct.wavenumber_derivative::<C64>(
-        problem.discretisation,
-        problem.scale(),
-        pair.k,
-        combination,
-    );
+    let derivative = problem.wavenumber_derivative::<C64>(pair.k, combination, 1);
     let mass = problem.mass::<C64>(pair.k);
     let above = dot(&pair.left, &apply(derivative.as_ref(), &pair.right));
     above / dot(&pair.left, &mass.apply(&pair.right))

@@ -415,6 +415,33 @@ pub struct Distance {
     pub distance: f64,
 }
 
+impl Distance {
+    /// What is near, and the command that gives it an amplitude of its own beside those of the modes at `q`.
+    pub fn in_words(&self, q: &[f64]) -> String {
+        let (name, distance) = (self.monomial.name(), self.distance);
+        if self.q == 0.0 {
+            return format!(
+                "small divisor: the mean that {name} forces is met by a slow mean mode, {distance:.1e} away"
+            );
+        }
+        let mut modes: Vec<String> = q.iter().map(|q| format!("--mode k={q}")).collect();
+        modes.push(match q.contains(&self.q) {
+            // Not the mode that is there already.
+            true => format!(
+                "--mode k={},near={:.6}:{:.6}",
+                self.q, self.shift.re, self.shift.im
+            ),
+            false => format!("--mode k={}", self.q),
+        });
+        format!(
+            "small divisor: {name} meets a mode at k = {}, {distance:.1e} away, which wants an amplitude of its own: \
+             landau amplitudes with {}",
+            self.q,
+            modes.join(" ")
+        )
+    }
+}
+
 /// A problem of the expansion.
 #[derive(Clone)]
 struct Posed {

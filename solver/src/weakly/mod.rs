@@ -1,7 +1,10 @@
 //! Weakly nonlinear analysis: Landau coefficients, amplitude expansions of any modes to any order.
 
+mod amplitude;
 mod bifurcation;
 mod cubic;
+mod envelope;
+mod equilibria;
 mod expansion;
 mod forcing;
 mod mode;
@@ -10,9 +13,13 @@ mod outputs;
 mod pattern;
 mod response;
 mod system;
+mod waves;
 
+pub use amplitude::AmplitudeEquation;
 pub use bifurcation::{Bifurcation, Side, equilibrium};
 pub use cubic::{LandauPoint, Selection, from_pair, point, select, warm_point};
+pub use envelope::Envelope;
+pub use equilibria::{Equilibrium, equilibria};
 pub use expansion::{CriticalMode, Distance, Expansion};
 pub use mode::Mode;
 pub use normalisation::{normalise, quadrature_grid, quadrature_weights};
@@ -20,3 +27,4 @@ pub use outputs::{outputs, value_at};
 pub use pattern::{Pattern, Window, pattern};
 pub use response::{Multiplier, arithmetic};
 pub use system::{AmplitudeSystem, Term, power};
+pub use waves::{Stable, Waves};
