@@ -45,7 +45,7 @@ fn point(
     let set: Vec<String> = set.iter().map(|(n, v)| format!("{n}={v:e}")).collect();
     setup.set(&set).expect("parameters");
     let selection = near.map_or(Selection::Leading, Selection::Near);
-    PointReport::compute(&setup, k, selection).ok()
+    PointReport::compute(&setup, k, selection, 3).ok()
 }
 
 /// An answer at one resolution against that of another.

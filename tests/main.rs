@@ -1,8 +1,10 @@
 //! The test families. Adding a case is adding a file (diagnostics, golden text) or a function.
 
+mod amplitudes;
 mod architecture;
 mod command_line;
 mod coverage;
+mod defects;
 mod derivatives;
 mod diagnostics;
 mod errata;
@@ -13,6 +15,7 @@ mod identities;
 mod latex;
 mod layout;
 mod limits;
+mod orders;
 mod published;
 mod published_bed;
 mod recipes;

@@ -65,6 +65,13 @@ impl Monomial {
         }
     }
 
+    /// The exponent of one amplitude or conjugate in it.
+    pub fn exponent_of(&self, one: &Monomial) -> f64 {
+        let own = self.z.iter().chain(&self.conj);
+        let pairs = own.zip(one.z.iter().chain(&one.conj));
+        pairs.map(|(e, o)| f64::from(e * o)).sum()
+    }
+
     /// Self / other, where other divides it.
     pub fn over(&self, other: &Monomial) -> Option<Monomial> {
         let difference = |a: &[u8], b: &[u8]| -> Option<Vec<u8>> {

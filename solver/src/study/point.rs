@@ -239,7 +239,10 @@ fn longer(
     for (term, error) in system.equations[0].iter().zip(&errors[0]).skip(2) {
         let degree = term.monomial.degree();
         let name = format!("c{}", degree - 1);
-        if !(*error <= UNCONVERGED * term.g.norm()) && !(*error <= CANCELLED * point.size()) {
+        // Where it cancels, of the size that c2 and the slow rates give it.
+        let sum = point.size() * (point.size() / point.pair.scale).powi(degree as i32 / 2 - 1);
+        let allowed = (UNCONVERGED * term.g.norm()).max(CANCELLED * sum);
+        if error.is_nan() || *error > allowed {
             return Err(unconverged(setup, &name, *error, term.g.norm()));
         }
         equation.coefficients.push(term.g);

@@ -95,6 +95,7 @@ pub fn from_pair<'p, 'm>(problem: &'p Problem<'m>, pair: EigenPair) -> Result<La
             shift,
             forcing,
             arithmetic: arithmetic(problem, &[pair.c]),
+            order: 2,
             is_real: q == 0.0,
             borders: &[],
         };
@@ -120,12 +121,6 @@ pub fn from_pair<'p, 'm>(problem: &'p Problem<'m>, pair: EigenPair) -> Result<La
         .apply(&problem.solver_basis(&fundamental.values));
     let below = dot(&pair.left, &mass_x);
     let contributions = third.map(|forcing| dot(&pair.left, &forcing) / below);
-    let multiplier = |(closure, relative, vanishes): &(String, f64, bool)| Multiplier {
-        closure: closure.clone(),
-        order: 2,
-        relative: *relative,
-        vanishes: *vanishes,
-    };
     Ok(LandauPoint {
         problem,
         c0: pair.c,
@@ -134,7 +129,7 @@ pub fn from_pair<'p, 'm>(problem: &'p Problem<'m>, pair: EigenPair) -> Result<La
         fundamental,
         mean: mean.mode.clone(),
         second: second.mode.clone(),
-        multipliers: mean.closures.iter().map(multiplier).collect(),
+        multipliers: mean.multipliers.clone(),
         responses: [mean, second],
         pair,
     })

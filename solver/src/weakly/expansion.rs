@@ -163,7 +163,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let least = self.modes.iter().filter_map(frequency);
         let reach = 0.5 * least.fold(f64::INFINITY, f64::min);
         let meets =
-            |mode: &CriticalMode| q == mode.pair.k && !((shift.im - mode.pair.c.im).abs() > reach);
+            |mode: &CriticalMode| q == mode.pair.k && (shift.im - mode.pair.c.im).abs() <= reach;
         let modes = self.modes.iter().enumerate();
         modes.filter(|(_, m)| meets(m)).map(|(j, _)| j).collect()
     }
@@ -282,6 +282,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
             shift: self.shift(alpha),
             forcing,
             arithmetic: self.arithmetic,
+            order: alpha.degree(),
             is_real: alpha.is_real(),
             borders: &borders,
         };
@@ -299,15 +300,8 @@ impl<'p, 'm> Expansion<'p, 'm> {
             let monomial = alpha.clone();
             self.system.equations[j].push(Term { monomial, g });
         }
-        let order = alpha.degree();
-        for (closure, relative, vanishes) in &response.closures {
-            self.multipliers.push(Multiplier {
-                closure: closure.clone(),
-                order,
-                relative: *relative,
-                vanishes: *vanishes,
-            });
-        }
+        self.multipliers
+            .extend(response.multipliers.iter().cloned());
         self.responses.push((alpha.clone(), response));
         Ok(mode)
     }

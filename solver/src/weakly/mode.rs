@@ -65,7 +65,7 @@ impl Mode {
     }
 
     /// What rounding can make of the jets, point by point, in units of the machine's precision:
-    /// Σ |D| |value| in place of D value.
+    /// Σ |D| max |value| in place of D value.
     pub fn rounding(&self, problem: &Problem, jets: &[Jet], grid: GridKind) -> Vec<Vec<f64>> {
         let mut table = vec![vec![0.0; jets.len()]; grid.count()];
         for (position, &jet) in jets.iter().enumerate() {
@@ -77,9 +77,12 @@ impl Mode {
             let order = usize::from(jet.y);
             let matrix = problem.discretisation.matrix(block.grid, grid, order);
             let scale = factor * problem.scale().powi(i32::from(jet.y));
-            for (j, value) in source[block.offset..][..block.len].iter().enumerate() {
+            // Every value was solved for, to the precision of the largest.
+            let values = source[block.offset..][..block.len].iter();
+            let largest = values.map(|v| v.norm()).fold(0.0, f64::max);
+            for j in 0..block.len {
                 for (row, d) in table.iter_mut().zip(matrix.col_as_slice(j)) {
-                    row[position] += scale * value.norm() * d.abs();
+                    row[position] += scale * largest * d.abs();
                 }
             }
         }

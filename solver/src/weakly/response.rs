@@ -13,6 +13,8 @@ pub struct Multiplier {
     /// What is closed, in words.
     pub closure: String,
     pub order: usize,
+    /// The largest part of a balance that it makes up.
+    pub size: f64,
     /// Its size in the balances over that of the forcing.
     pub relative: f64,
     /// Whether it has to vanish.
@@ -29,6 +31,8 @@ pub struct Question<'a> {
     pub forcing: Vec<C64>,
     /// How the modes with amplitudes are kept.
     pub arithmetic: Arithmetic,
+    /// Of which order in the amplitudes.
+    pub order: usize,
     /// Whether it is the coefficient of a product of |z_j|²: its own conjugate.
     pub is_real: bool,
     /// Column M0 φ and row M0ᴴ ψ of every mode whose amplitude equation takes part.
@@ -41,8 +45,8 @@ pub struct Response {
     pub mode: Mode,
     /// One coefficient a border.
     pub coefficients: Vec<C64>,
-    /// Of the closures that are no unknowns of the model, by position among the borders of the problem.
-    pub closures: Vec<(String, f64, bool)>,
+    /// Of the closures that are no unknowns of the model.
+    pub multipliers: Vec<Multiplier>,
     solver: AnySolver,
 }
 
@@ -114,7 +118,7 @@ impl Question<'_> {
             }
         };
         let solution = solver.solve(&right)?;
-        let mut closures = Vec::new();
+        let mut multipliers = Vec::new();
         let size = norm(&self.forcing);
         let mut drift = Vec::new();
         let profiles = problem.direct.layout.columns.len();
@@ -124,8 +128,14 @@ impl Question<'_> {
             let share = norm(&border.column) * value.size();
             let relative = if share == 0.0 { 0.0 } else { share / size };
             if border.kind != ClosureKind::Unknown {
-                let vanishes = border.kind != ClosureKind::Drift;
-                closures.push((border.name.clone(), relative, vanishes));
+                let largest = border.column.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+                multipliers.push(Multiplier {
+                    closure: border.name.clone(),
+                    order: self.order,
+                    size: largest * value.size(),
+                    relative,
+                    vanishes: border.kind != ClosureKind::Drift,
+                });
             }
             let Some(field) = border.field else { continue };
             let turn = quarter_turn(problem.direct.column_turn(field));
@@ -152,7 +162,7 @@ impl Question<'_> {
                 uniform,
             },
             coefficients: solution[closed..].iter().map(|c| c.complex()).collect(),
-            closures,
+            multipliers,
             solver: T::kept(solver),
         })
     }

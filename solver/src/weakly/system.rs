@@ -67,26 +67,20 @@ impl AmplitudeSystem {
     /// ∂(dz_i/dt)/∂z_j and ∂(dz_i/dt)/∂z̄_j.
     pub fn slopes(&self, z: &[C64]) -> [Vec<Vec<C64>>; 2] {
         let n = z.len();
-        let mut slopes = [0, 1].map(|_| vec![vec![C64::new(0.0, 0.0); n]; n]);
-        for (i, term) in self
-            .equations
-            .iter()
-            .enumerate()
-            .flat_map(|(i, e)| e.iter().map(move |t| (i, t)))
-        {
-            for j in 0..n {
-                let one = Monomial::amplitude(n, j);
-                for (side, factor, exponent) in [
-                    (0, one.clone(), term.monomial.z[j]),
-                    (1, one.conjugate(), term.monomial.conj[j]),
-                ] {
-                    if let Some(rest) = term.monomial.over(&factor) {
-                        slopes[side][i][j] += term.g * f64::from(exponent) * power(&rest, z);
-                    }
-                }
-            }
-        }
-        slopes
+        let slope = |equation: &Vec<Term>, factor: &Monomial| -> C64 {
+            let terms = equation.iter().filter_map(|term| {
+                let rest = term.monomial.over(factor)?;
+                let exponent = term.monomial.exponent_of(factor);
+                Some(term.g * exponent * power(&rest, z))
+            });
+            terms.sum()
+        };
+        let row = |equation: &Vec<Term>, conjugate: bool| -> Vec<C64> {
+            let factors = (0..n).map(|j| Monomial::amplitude(n, j));
+            let factors = factors.map(|one| if conjugate { one.conjugate() } else { one });
+            factors.map(|factor| slope(equation, &factor)).collect()
+        };
+        [false, true].map(|conjugate| self.equations.iter().map(|e| row(e, conjugate)).collect())
     }
 }
 

@@ -24,7 +24,7 @@ const START: f64 = 0.2;
 /// A defect counts while it stands this far above what the discretisation leaves, which is an estimate …
 const ABOVE_FLOOR: f64 = 300.0;
 /// … and this far above a bound of the rounding errors.
-const ABOVE_ROUNDING: f64 = 10.0;
+const ABOVE_ROUNDING: f64 = 100.0;
 /// Two slopes one after another that differ by less are those of a power.
 const SETTLED: f64 = 0.01;
 /// How far below the order a slope may be.
@@ -101,7 +101,7 @@ pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
         .map(|(d, r)| (d.value - 2.0 * r.value).max(0.0) / tiny)
         .collect();
     let floor = |row: usize, i: usize| {
-        let left = rest[row].value + linear[row] * amplitudes[i];
+        let left = rest[row].value + linear[row] * amplitudes[i] + series.closed(amplitudes[i]);
         (ABOVE_FLOOR * left).max(ABOVE_ROUNDING * measured[i][row].rounding)
     };
     // Over two steps.
@@ -270,6 +270,14 @@ impl<'e, 'p, 'm> Series<'e, 'p, 'm> {
         }
     }
 
+    /// What the multipliers of closures that ought to vanish leave in the balances: how far the collocated problem
+    /// is from keeping what it conserves.
+    fn closed(&self, amplitude: f64) -> f64 {
+        let multipliers = self.expansion.multipliers.iter().filter(|m| m.vanishes);
+        let left = multipliers.map(|m| 2.0 * m.size * amplitude.powi(m.order as i32));
+        left.sum()
+    }
+
     /// The amplitudes at which the defect is looked at: of one size, at phases that have nothing to do with
     /// one another.
     fn samples(&self, amplitude: f64) -> Vec<Vec<C64>> {
@@ -398,13 +406,13 @@ impl Tables {
 fn power_rate(monomial: &Monomial, z: &[C64], rates: &[C64]) -> C64 {
     let n = z.len();
     let mut total = C64::new(0.0, 0.0);
-    for j in 0..n {
+    for (j, rate) in rates.iter().enumerate() {
         let one = Monomial::amplitude(n, j);
         if let Some(rest) = monomial.over(&one) {
-            total += f64::from(monomial.z[j]) * power(&rest, z) * rates[j];
+            total += f64::from(monomial.z[j]) * power(&rest, z) * rate;
         }
         if let Some(rest) = monomial.over(&one.conjugate()) {
-            total += f64::from(monomial.conj[j]) * power(&rest, z) * rates[j].conj();
+            total += f64::from(monomial.conj[j]) * power(&rest, z) * rate.conj();
         }
     }
     total
