@@ -42,11 +42,11 @@ impl<T: Scalar> Reduced<T> {
     pub fn new((mut operator, mut mass): (Mat<T>, Mat<T>)) -> Result<Self> {
         let mut basis = balance(&mut operator, &mut mass);
         // Against the whole, not against what is left of it: the last thing left may be noise.
-        let with_mass =
-            (0..mass.nrows()).filter(|&row| largest_of_row(&mass, row) > f64::MIN_POSITIVE);
-        let terms = with_mass
-            .map(|row| largest_of_row(&operator, row))
-            .fold(0.0, f64::max);
+        let rows = largest_of_rows(&mass)
+            .into_iter()
+            .zip(largest_of_rows(&operator));
+        let with_mass = rows.filter(|(mass, _)| *mass > f64::MIN_POSITIVE);
+        let terms = with_mass.map(|(_, terms)| terms).fold(0.0, f64::max);
         let masses = largest(&mass);
         // Conditions and constraints as they were given have units of their own, and no noise.
         let mut noise = 0.0;
@@ -150,8 +150,9 @@ impl<T: Scalar> Reduced<T> {
         let shifted = Mat::from_fn(n, n, |i, j| {
             T::from_complex(self.operator[(i, j)].complex() - shift * self.mass[(i, j)].complex())
         });
-        let scale: Vec<f64> = (0..n)
-            .map(|i| largest_of_row(&shifted, i).recip())
+        let scale: Vec<f64> = largest_of_rows(&shifted)
+            .iter()
+            .map(|s| s.recip())
             .collect();
         let row_scaled = |m: MatRef<'_, T>| Mat::from_fn(n, n, |i, j| m[(i, j)].times(scale[i]));
         let lu = row_scaled(shifted.as_ref()).partial_piv_lu();
@@ -167,14 +168,11 @@ fn balance<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>) -> Mat<T> {
     let n = operator.ncols();
     let mut scales = vec![1.0; n];
     for _ in 0..BALANCING {
-        for i in 0..operator.nrows() {
-            let size = largest_of_row(operator, i).max(largest_of_row(mass, i));
-            let factor = power_of_two(size);
-            for j in 0..n {
-                operator[(i, j)] = operator[(i, j)].times(factor);
-                mass[(i, j)] = mass[(i, j)].times(factor);
-            }
-        }
+        let sizes = largest_of_rows(operator);
+        let sizes = sizes.into_iter().zip(largest_of_rows(mass));
+        let factors: Vec<f64> = sizes.map(|(a, b)| power_of_two(a.max(b))).collect();
+        scale_rows(operator, &factors);
+        scale_rows(mass, &factors);
         for (j, scale) in scales.iter_mut().enumerate() {
             let column = operator.col_as_slice(j).iter().chain(mass.col_as_slice(j));
             let factor = power_of_two(column.map(|v| v.size()).fold(0.0, f64::max));
@@ -186,13 +184,12 @@ fn balance<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>) -> Mat<T> {
         }
     }
     // Rows of comparable mass, as long as a row without any is one of zeros: later, what cancels is noise.
-    for i in 0..mass.nrows() {
-        let factor = power_of_two(largest_of_row(mass, i));
-        for j in 0..n {
-            operator[(i, j)] = operator[(i, j)].times(factor);
-            mass[(i, j)] = mass[(i, j)].times(factor);
-        }
-    }
+    let factors: Vec<f64> = largest_of_rows(mass)
+        .into_iter()
+        .map(power_of_two)
+        .collect();
+    scale_rows(operator, &factors);
+    scale_rows(mass, &factors);
     Mat::from_fn(n, n, |i, j| {
         T::from_complex(C64::new(if i == j { scales[i] } else { 0.0 }, 0.0))
     })
@@ -207,14 +204,27 @@ fn power_of_two(size: f64) -> f64 {
     }
 }
 
-fn largest_of_row<T: Scalar>(matrix: &Mat<T>, row: usize) -> f64 {
-    let sizes = (0..matrix.ncols()).map(|j| matrix[(row, j)].size());
-    sizes.fold(f64::MIN_POSITIVE, f64::max)
+/// Of every row, column by column as they are kept.
+fn largest_of_rows<T: Scalar>(matrix: &Mat<T>) -> Vec<f64> {
+    let mut largest = vec![f64::MIN_POSITIVE; matrix.nrows()];
+    for j in 0..matrix.ncols() {
+        for (most, entry) in largest.iter_mut().zip(matrix.col_as_slice(j)) {
+            *most = most.max(entry.size());
+        }
+    }
+    largest
 }
 
 fn largest<T: Scalar>(matrix: &Mat<T>) -> f64 {
-    let rows = (0..matrix.nrows()).map(|row| largest_of_row(matrix, row));
-    rows.fold(0.0, f64::max)
+    largest_of_rows(matrix).into_iter().fold(0.0, f64::max)
+}
+
+/// Multiplies rows by factors.
+fn scale_rows<T: Scalar>(matrix: &mut Mat<T>, factors: &[f64]) {
+    for j in 0..matrix.ncols() {
+        let column = matrix.col_as_slice_mut(j).iter_mut();
+        column.zip(factors).for_each(|(x, f)| *x = x.times(*f));
+    }
 }
 
 /// Rotates rows so that hidden algebraic equations show as rows without mass; false where there are none.
@@ -242,14 +252,11 @@ fn expose<T: Scalar>(operator: &mut Mat<T>, mass: &mut Mat<T>, masses: f64) -> b
 /// so that no equation outweighs another.
 fn null_space<T: Scalar>(operator: &Mat<T>, algebraic: &[usize], noise: f64) -> Result<Mat<T>> {
     let size = operator.ncols();
-    let nothing = algebraic
-        .iter()
-        .any(|&row| largest_of_row(operator, row) <= noise);
+    let sizes = largest_of_rows(operator);
+    let nothing = algebraic.iter().any(|&row| sizes[row] <= noise);
     let constraints = Mat::from_fn(size, algebraic.len(), |j, a| {
         let row = algebraic[a];
-        operator[(row, j)]
-            .conjugate()
-            .times(largest_of_row(operator, row).recip())
+        operator[(row, j)].conjugate().times(sizes[row].recip())
     });
     let qr = constraints.col_piv_qr();
     let r = qr.thin_R();

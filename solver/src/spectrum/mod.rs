@@ -72,9 +72,14 @@ fn eigenvectors(problem: &Problem, k: f64) -> Result<(Spectrum, Vec<Mode>)> {
 /// A spectrum that cannot be computed, an eigenvalue that is not simple, or a mode that inverse iteration
 /// does not confirm.
 pub fn leading(problem: &Problem, k: f64) -> Result<EigenPair> {
-    let (spectrum, modes) = eigenvectors(problem, k)?;
-    let mode = modes.into_iter().next().ok_or_else(no_modes)?;
-    confirm(problem, k, &spectrum, mode)
+    let spectrum = eigenvalues(problem, k)?;
+    let c = *spectrum.values.first().ok_or_else(no_modes)?;
+    confirm(
+        problem,
+        k,
+        &spectrum,
+        (c, arbitrary(problem.direct.layout.size)),
+    )
 }
 
 /// The mode nearest to a given eigenvalue.
@@ -82,12 +87,18 @@ pub fn leading(problem: &Problem, k: f64) -> Result<EigenPair> {
 /// # Errors
 /// As [`leading`].
 pub fn nearest(problem: &Problem, k: f64, target: C64) -> Result<EigenPair> {
-    let (spectrum, modes) = eigenvectors(problem, k)?;
-    let best = modes
-        .into_iter()
-        .min_by(|a, b| (a.0 - target).norm().total_cmp(&(b.0 - target).norm()))
+    let spectrum = eigenvalues(problem, k)?;
+    let c = *spectrum
+        .values
+        .iter()
+        .min_by(|a, b| (*a - target).norm().total_cmp(&(*b - target).norm()))
         .ok_or_else(no_modes)?;
-    confirm(problem, k, &spectrum, best)
+    confirm(
+        problem,
+        k,
+        &spectrum,
+        (c, arbitrary(problem.direct.layout.size)),
+    )
 }
 
 /// The continuation of a mode to another wavenumber or base state, by its shape.

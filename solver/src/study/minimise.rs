@@ -1,19 +1,26 @@
-//! The extremum over k of a neutral curve: growth = 0 and dc0/dk = 0 (real parts) together.
+//! The extremum over k of a neutral curve: growth = 0 and dc0/dk = 0 (real parts) together, by Newton's method in
+//! k and the parameter.
 
 use super::critical::{Critical, Question, Sample, Sampler, TOLERANCE};
 use super::root::brent;
-use super::sensitivity::wavenumber;
 use super::{Carried, Progress, Setup};
 use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
-use crate::weakly::{self, Selection};
+use crate::weakly::{self, Envelope, Selection};
+use rayon::prelude::*;
 
 /// Values of the parameter that are scanned.
 const SCAN: usize = 12;
+/// At every so many of them all modes over the whole range of k are looked at; in between, these are followed.
+const STRIDE: usize = 6;
 /// Steps of a range of k in which the largest growth is looked for.
 const CREST_STEPS: usize = 16;
+/// Steps of Newton's method, in k alone and in k and the parameter.
+const MOST_STEPS: usize = 20;
+/// Relative change of the parameter by which derivatives along it are differenced.
+const NUDGE: f64 = 1e-6;
 /// Times that a higher crest may turn up at what seemed a root.
 const MOST_CRESTS: usize = 4;
 
@@ -47,38 +54,34 @@ pub fn minimise(
         question,
         range,
     };
-    let mut previous: Option<(f64, Crest)> = None;
-    let mut trouble = None;
-    let mut seen: Vec<(f64, f64)> = Vec::new();
-    for step in 0..=SCAN {
-        progress.advance(1);
-        let x = question.from + (question.to - question.from) * step as f64 / SCAN as f64;
-        // Each scan point looks over the whole range of k, in case another mode takes over.
-        let crest = match search.crest(x, None) {
-            Ok(crest) => crest,
-            Err(error) => {
-                trouble = Some(error);
-                continue;
+    let (seen, mut trouble) = search.scan(progress);
+    let crossing = |pair: &&[(f64, Crest)]| pair[0].1.growth() * pair[1].1.growth() <= 0.0;
+    let mut crossings = seen.windows(2).filter(crossing).peekable();
+    let crosses = crossings.peek().is_some();
+    // One at an end of the range of k is an answer only to say so, where there is no other.
+    for pair in crossings {
+        match search.refine(pair[0].clone(), pair[1].clone()) {
+            Ok(found) => {
+                progress.end();
+                return Ok(found);
             }
-        };
-        seen.push((x, crest.growth()));
-        if let Some((before, last)) = previous.take()
-            && last.growth() * crest.growth() <= 0.0
-        {
-            let found = search.refine((before, last), (x, crest))?;
-            progress.end();
-            return Ok(found);
+            Err(error) => trouble = Some(error),
         }
-        previous = Some((x, crest));
+    }
+    if let Some(error) = trouble.take_if(|_| crosses) {
+        return Err(error);
     }
     let (from, to) = range;
-    let (Some(first), Some(last)) = (seen.first(), seen.last()) else {
+    let (Some((x, first)), Some((y, last))) = (seen.first(), seen.last()) else {
         return Err(trouble.unwrap_or_else(|| Error::computation("the interval is empty")));
     };
     Err(Error::computation(format!(
-        "the largest growth rate over k in {from}..{to} does not change sign between {} and {}: {:.4e} at {:.6}, \
-         {:.4e} at {:.6}; try another interval",
-        question.from, question.to, first.1, first.0, last.1, last.0
+        "the largest growth rate over k in {from}..{to} does not change sign between {} and {}: {:.4e} at {x:.6}, \
+         {:.4e} at {y:.6}; try another interval",
+        question.from,
+        question.to,
+        first.growth(),
+        last.growth()
     )))
 }
 
@@ -89,20 +92,62 @@ struct Search<'s, 'm> {
 }
 
 impl Search<'_, '_> {
+    /// The largest growth along the parameter, wherever it is found, and what failed last.
+    fn scan(&self, progress: &dyn Progress) -> (Vec<(f64, Crest)>, Option<Error>) {
+        let question = &self.question;
+        let place =
+            |step: usize| question.from + (question.to - question.from) * step as f64 / SCAN as f64;
+        let mut trouble = None;
+        let mut found: Vec<Option<Crest>> = vec![None; SCAN + 1];
+        for step in (0..=SCAN).step_by(STRIDE) {
+            progress.advance(1);
+            match self.crest(place(step), None) {
+                Ok(crest) => found[step] = Some(crest),
+                Err(error) => trouble = Some(error),
+            }
+        }
+        // Followed from both sides: another mode may take over in between.
+        let mut keep = |step: usize, near: Option<Crest>, found: &mut Vec<Option<Crest>>| {
+            let crest = match near.map(|near| self.crest(place(step), Some(&near.carried))) {
+                Some(Ok(crest)) => crest,
+                // What cannot be followed is looked for anew.
+                _ => match self.crest(place(step), None) {
+                    Ok(crest) => crest,
+                    Err(error) => {
+                        trouble = Some(error);
+                        return;
+                    }
+                },
+            };
+            let higher = |known: &Crest| known.growth() >= crest.growth();
+            if !found[step].as_ref().is_some_and(higher) {
+                found[step] = Some(crest);
+            }
+        };
+        for step in (1..SCAN).filter(|step| !step.is_multiple_of(STRIDE)) {
+            progress.advance(1);
+            let near = found[step - 1].clone();
+            keep(step, near, &mut found);
+        }
+        for step in (1..SCAN).filter(|step| !step.is_multiple_of(STRIDE)).rev() {
+            let near = found[step + 1].clone();
+            keep(step, near, &mut found);
+        }
+        let seen = found.into_iter().enumerate();
+        let seen = seen.filter_map(|(step, crest)| Some((place(step), crest?)));
+        (seen.collect(), trouble)
+    }
+
     /// The largest growth at one value of the parameter: over the whole range, or on the crest of `near`.
     fn crest(&self, x: f64, near: Option<&Carried>) -> Result<Crest> {
         let moved = self.setup.moved(self.question.axis, x)?;
         let base = moved.base(near.map(|c| &c.base))?;
         let (pair, at_end) = moved.with_problem(&base, |problem| {
-            let (start, reach) = match near {
-                Some(carried) => (carried.pair.clone(), 1e-3 * carried.pair.k),
-                None => {
-                    let (from, to) = self.range;
-                    let highest = highest(problem, self.question.near, self.range)?;
-                    (highest, (to - from) / CREST_STEPS as f64)
-                }
+            let start = match near {
+                Some(carried) => carried.pair.clone(),
+                None => highest(problem, self.question.near, self.range)?,
             };
-            climb(problem, start, reach, self.range)
+            climb(problem, start, self.range)
         })?;
         Ok(Crest {
             carried: Carried { base, pair },
@@ -116,17 +161,12 @@ impl Search<'_, '_> {
             std::mem::swap(&mut low, &mut high);
         }
         for _ in 0..MOST_CRESTS {
-            let span = TOLERANCE * low.0.abs().max(high.0.abs());
-            // The mode that grows on one side is the one that is followed to zero.
-            let mut last = high.1.clone();
             let slope = (high.1.growth() - low.1.growth()) / (high.0 - low.0);
-            let ends = ((low.0, low.1.growth()), (high.0, high.1.growth()));
-            let follow = |x: f64| {
-                last = self.crest(x, Some(&last.carried))?;
-                Ok(last.growth())
+            // The mode that grows on one side is the one that is followed to zero.
+            let (x, root) = match self.newton(&low, &high) {
+                Some(found) => found,
+                None => self.bracketed(&low, &high)?,
             };
-            let (x, _) = brent(follow, ends.0, ends.1, span)?;
-            let root = self.crest(x, Some(&last.carried))?;
             // Another mode, or another crest of this one, may be higher there.
             let fresh = self.crest(x, None)?;
             let scale = root.carried.pair.scale;
@@ -140,6 +180,79 @@ impl Search<'_, '_> {
             "other modes keep overtaking the critical one near {}; try a smaller range of k",
             high.0
         )))
+    }
+
+    /// Newton's method in (k, x) for a = Re c0 = 0 and Re dc0/dk = 0, from between two values; nothing where it leaves
+    /// the bracket, or k the range.
+    fn newton(&self, low: &(f64, Crest), high: &(f64, Crest)) -> Option<(f64, Crest)> {
+        let (a, b) = (low.1.growth(), high.1.growth());
+        let between = |x: f64| (x - low.0) * (x - high.0) <= 0.0;
+        let mut x = low.0 - a * (high.0 - low.0) / (b - a);
+        let mut crest = high.1.clone();
+        for _ in 0..MOST_STEPS {
+            let k = crest.carried.pair.k;
+            let (here, envelope) = self.envelope(x, k, &crest.carried)?;
+            let step = NUDGE * x.abs().max((high.0 - low.0).abs());
+            let (there, moved) = self.envelope(x + step, k, &here)?;
+            let along = (there.pair.c.re - here.pair.c.re) / step;
+            let across = (moved.slope.re - envelope.slope.re) / step;
+            let (growth, slope) = (here.pair.c.re, envelope.slope.re);
+            // [a_k a_x; a_kk a_kx] (dk, dx) = −(a, a_k)
+            let determinant = slope * across - along * envelope.curvature.re;
+            let dk = (along * slope - across * growth) / determinant;
+            let dx = (envelope.curvature.re * growth - slope * slope) / determinant;
+            crest = Crest {
+                carried: here,
+                at_end: false,
+            };
+            if dx.abs() <= TOLERANCE * x.abs() && dk.abs() <= 1e-9 * k {
+                return Some((x, crest));
+            }
+            x += dx;
+            let inside = k + dk > self.range.0 && k + dk < self.range.1;
+            if !inside || !between(x) {
+                return None;
+            }
+            crest.carried.pair = self.at(x, k + dk, &crest.carried)?.pair;
+        }
+        None
+    }
+
+    /// A mode followed to another place.
+    fn at(&self, x: f64, k: f64, near: &Carried) -> Option<Carried> {
+        let moved = self.setup.moved(self.question.axis, x).ok()?;
+        let base = moved.base(Some(&near.base)).ok()?;
+        let pair = moved.with_problem(&base, |problem| spectrum::follow(problem, k, &near.pair));
+        Some(Carried {
+            pair: pair.ok()?,
+            base,
+        })
+    }
+
+    /// The same with its dc0/dk and d²c0/dk².
+    fn envelope(&self, x: f64, k: f64, near: &Carried) -> Option<(Carried, Envelope)> {
+        let moved = self.setup.moved(self.question.axis, x).ok()?;
+        let base = moved.base(Some(&near.base)).ok()?;
+        let found = moved.with_problem(&base, |problem| {
+            let pair = spectrum::follow(problem, k, &near.pair)?;
+            let envelope = Envelope::of(problem, &pair)?;
+            Ok((pair, envelope))
+        });
+        let (pair, envelope) = found.ok()?;
+        Some((Carried { base, pair }, envelope))
+    }
+
+    /// The same root by Brent's method along the crest.
+    fn bracketed(&self, low: &(f64, Crest), high: &(f64, Crest)) -> Result<(f64, Crest)> {
+        let span = TOLERANCE * low.0.abs().max(high.0.abs());
+        let mut last = high.1.clone();
+        let follow = |x: f64| {
+            last = self.crest(x, Some(&last.carried))?;
+            Ok(last.growth())
+        };
+        let ends = ((low.0, low.1.growth()), (high.0, high.1.growth()));
+        let (x, _) = brent(follow, ends.0, ends.1, span)?;
+        Ok((x, self.crest(x, Some(&last.carried))?))
     }
 
     fn answer(&self, x: f64, root: Crest, slope: f64) -> Result<Critical> {
@@ -175,48 +288,51 @@ impl Search<'_, '_> {
 /// The mode of largest growth among evenly spaced k.
 fn highest(problem: &Problem, target: Option<C64>, (from, to): (f64, f64)) -> Result<EigenPair> {
     let selection = target.map_or(Selection::Leading, Selection::Near);
-    let mut trouble = None;
-    let mut best: Option<EigenPair> = None;
-    for i in 0..=CREST_STEPS {
-        let k = from + (to - from) * i as f64 / CREST_STEPS as f64;
-        match weakly::select(problem, k, selection) {
-            Ok(pair) if best.as_ref().is_none_or(|b| pair.c.re > b.c.re) => best = Some(pair),
-            Ok(_) => {}
-            Err(error) => trouble = Some(error),
-        }
-    }
+    let places: Vec<f64> = (0..=CREST_STEPS)
+        .map(|i| from + (to - from) * i as f64 / CREST_STEPS as f64)
+        .collect();
+    let found: Vec<Result<EigenPair>> = places
+        .par_iter()
+        .map(|&k| weakly::select(problem, k, selection))
+        .collect();
+    let (found, trouble): (Vec<_>, Vec<_>) = found.into_iter().partition(Result::is_ok);
+    let best = found
+        .into_iter()
+        .flatten()
+        .reduce(|best, pair| if pair.c.re > best.c.re { pair } else { best });
+    let trouble = trouble.into_iter().find_map(Result::err);
     best.ok_or_else(|| {
         trouble.unwrap_or_else(|| Error::computation("no mode was found in the range of k"))
     })
 }
 
-/// The crest of a mode's growth over k next to `start`: dc0/dk = 0, or the end of the range that it rises to.
-fn climb(
-    problem: &Problem,
-    start: EigenPair,
-    mut reach: f64,
-    (from, to): (f64, f64),
-) -> Result<(EigenPair, bool)> {
+/// The crest of a mode's growth over k next to `start`: dc0/dk = 0 by Newton's method, uphill where growth is not
+/// concave; or the end of the range that it rises to.
+fn climb(problem: &Problem, start: EigenPair, (from, to): (f64, f64)) -> Result<(EigenPair, bool)> {
     let mut pair = spectrum::follow(problem, start.k, &start)?;
-    let mut slope = |k: f64| -> Result<(f64, EigenPair)> {
-        pair = spectrum::follow(problem, k, &pair)?;
-        Ok((wavenumber(problem, &pair).re, pair.clone()))
-    };
-    let (first, _) = slope(start.k)?;
-    let side = first.signum();
-    let (mut a, mut fa) = (start.k, first);
-    for _ in 0..60 {
-        let b = (a + side * reach).clamp(from, to);
-        if b == a {
-            return Ok((slope(b)?.1, true));
+    let mut reach = (to - from) / CREST_STEPS as f64;
+    for _ in 0..5 * MOST_STEPS {
+        let Envelope { slope, curvature } = Envelope::of(problem, &pair)?;
+        let newton = -slope.re / curvature.re;
+        let step = match curvature.re < 0.0 && newton.abs() <= reach {
+            true => newton,
+            false => reach.copysign(slope.re),
+        };
+        let k = (pair.k + step).clamp(from, to);
+        if k == pair.k {
+            return Ok((pair, slope.re != 0.0 && (k == from || k == to)));
         }
-        let (fb, _) = slope(b)?;
-        if fa * fb <= 0.0 {
-            let (k, _) = brent(|k| Ok(slope(k)?.0), (a, fa), (b, fb), TOLERANCE * b)?;
-            return Ok((slope(k)?.1, false));
+        let next = spectrum::follow(problem, k, &pair)?;
+        // A step too far.
+        if next.c.re < pair.c.re - 1e-12 * pair.scale {
+            reach = 0.3 * step.abs();
+            continue;
         }
-        (a, fa) = (b, fb);
-        reach *= 1.5;
+        let settled = step.abs() <= 1e-10 * k;
+        pair = next;
+        if settled {
+            return Ok((pair, false));
+        }
     }
-    Err(Error::computation("the extremum over k was not bracketed"))
+    Err(Error::computation("the extremum over k was not found"))
 }
