@@ -368,6 +368,63 @@ fn the_pair_of_the_bed() {
     );
 }
 
+/// Competition by hand, u_t = r u − (1 + ∂xx)² u − u³: z_i' = a_i z_i − 3 |z_i|² z_i − 6 |z_j|² z_i, pure states stable, the mixed
+/// one not; and of waves, where the standing one has |z|² = −a0/(self + cross).
+#[test]
+fn equilibria_by_hand() {
+    let found =
+        json("amplitudes swift_hohenberg --mode k=0.95 --mode k=1.08 --set r=0.2 --set b=0");
+    let rate = |k: f64| 0.2 - (1.0 - k * k).powi(2);
+    let (a, b) = (rate(0.95), rate(1.08));
+    // 3x + 6y = a, 6x + 3y = b
+    let (x, y) = ((2.0 * b - a) / 9.0, (2.0 * a - b) / 9.0);
+    let expected = [
+        ([a / 3.0, 0.0], Some(true)),
+        ([0.0, b / 3.0], Some(true)),
+        ([x, y], Some(false)),
+    ];
+    let states = found["equilibria"].as_array().expect("equilibria");
+    assert_eq!(states.len(), expected.len(), "{found}");
+    for (state, (squares, stable)) in states.iter().zip(expected) {
+        for (j, square) in squares.into_iter().enumerate() {
+            close(
+                "z",
+                number(state, &format!("/z/{j}/0")),
+                square.sqrt(),
+                1e-10,
+            );
+        }
+        assert_eq!(state["stable"].as_bool(), stable, "{state}");
+        assert_eq!(state["drift"].as_f64(), Some(0.0), "{state}");
+    }
+    // −2a, and a_j − 2a of the other mode, both twice but for the free phase.
+    let own = states[0]["eigenvalues"].as_array().expect("eigenvalues");
+    let mut real: Vec<f64> = own.iter().map(|c| number(c, "/0")).collect();
+    real.sort_by(f64::total_cmp);
+    for (found, exact) in real.iter().zip([-2.0 * a, b - 2.0 * a, b - 2.0 * a]) {
+        close("an eigenvalue", *found, exact, 1e-10);
+    }
+    let line = "brusselator --set A=2 --set B=7.1 --set D1=1 --set D2=1";
+    let waves = json(&format!("amplitudes {line} --mode k=1 --mode k=-1"));
+    let states = waves["equilibria"].as_array().expect("equilibria");
+    let (own, cross) = (
+        coefficient(&waves, 0, "z1² z̄1"),
+        coefficient(&waves, 0, "z1 z2 z̄2"),
+    );
+    let standing = (-0.05 / (own.re + cross.re)).sqrt();
+    close(
+        "the standing wave",
+        number(&states[2], "/z/0/0"),
+        standing,
+        1e-10,
+    );
+    assert_eq!(states[2]["stable"], false, "{waves}");
+    let c0 = coefficient(&waves, 0, "z1");
+    let travelling = -0.05 / own.re;
+    let drift = -(c0.im + own.im * travelling);
+    close("the drift", number(&states[0], "/drift"), drift, 1e-10);
+}
+
 #[test]
 fn refusals() {
     let refused = |line: &str, status: i32, text: &str| {

@@ -3,7 +3,7 @@
 //! The exact values follow from the amplitude expansion by hand; the others were computed to
 //! 200 bits and confirmed by fully nonlinear codes.
 
-use crate::support::{close, json, number};
+use crate::support::{close, json, landau, number};
 
 #[test]
 fn swift_hohenberg_line() {
@@ -234,4 +234,44 @@ fn granular_couette() {
         number(&json(&format!("point granular_couette {line}")), "/c2/0")
     };
     assert!(c2(0.173225) > 0.0 && c2(0.173235) < 0.0);
+}
+
+/// The critical point of plane Poiseuille flow from intervals far from it and in either direction.
+#[test]
+fn poiseuille_from_many_intervals() {
+    let from = [200.0, 2000.0, 5000.0, 5700.0];
+    let to = [5850.0, 8000.0, 30_000.0];
+    let bands = [(0.4, 1.2), (0.9, 3.5), (1.0, 1.05)];
+    for (i, from) in from.into_iter().enumerate() {
+        for (j, to) in to.into_iter().enumerate() {
+            let (low, high) = bands[(i + j) % bands.len()];
+            let (a, b) = if (i + j) % 2 == 0 {
+                (from, to)
+            } else {
+                (to, from)
+            };
+            let line = format!(
+                "critical plane_poiseuille --vary R --from {a} --to {b} --minimize k={low}:{high} -M 56"
+            );
+            let found = json(&line);
+            close(&line, number(&found, "/value"), 5772.221_816_2, 1e-4);
+            close(&line, number(&found, "/k"), 1.020_547_449_3, 1e-7);
+        }
+    }
+    // The growth of the range rises to its end; or does not change sign at all.
+    for (line, text) in [
+        (
+            "--from 5000 --to 9000 --minimize k=1.03:1.08",
+            "at the end k = 1.03",
+        ),
+        (
+            "--from 3000 --to 5000 --minimize k=0.9:1.1",
+            "does not change sign",
+        ),
+    ] {
+        let line = format!("critical plane_poiseuille --vary R {line} -M 56");
+        let answer = landau(&line.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(answer.status, 3, "{line}: {}", answer.out);
+        assert!(answer.err.contains(text), "{line}: {}", answer.err);
+    }
 }

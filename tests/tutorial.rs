@@ -57,6 +57,29 @@ fn agrees(expected: &str, answer: &str) -> bool {
     rest.is_empty() || expected.ends_with('…')
 }
 
+/// Runs every command of a page and compares; how many there were.
+fn commands(page: &str, folder: &Path) -> usize {
+    let consoles = blocks(page).into_iter().filter(|b| b.info == "console");
+    consoles.map(|block| compare(&block.text, folder)).count()
+}
+
+/// One command with its answer.
+fn compare(text: &str, folder: &Path) {
+    let (command, expected) = text.split_once('\n').expect("an answer");
+    let command = command.strip_prefix("$ ").expect("a prompt");
+    let answer = run(command, folder);
+    assert!(
+        agrees(expected, &answer),
+        "{command} answers\n{answer}\nnot\n{expected}"
+    );
+}
+
+#[test]
+fn the_page_beyond_c2_says_what_the_tool_says() {
+    let page = std::fs::read_to_string(root().join("spec/AMPLITUDES.md")).expect("the page");
+    assert!(commands(&page, &root()) >= 6);
+}
+
 #[test]
 fn the_tutorial_says_what_the_tool_says() {
     let page = std::fs::read_to_string(root().join("spec/TUTORIAL.md")).expect("the tutorial");
@@ -71,13 +94,7 @@ fn the_tutorial_says_what_the_tool_says() {
                 std::fs::write(&file, before + "\n" + &block.text + "\n").expect("written");
             }
             "console" => {
-                let (command, expected) = block.text.split_once('\n').expect("an answer");
-                let command = command.strip_prefix("$ ").expect("a prompt");
-                let answer = run(command, folder.path());
-                assert!(
-                    agrees(expected, &answer),
-                    "{command} answers\n{answer}\nnot\n{expected}"
-                );
+                compare(&block.text, folder.path());
                 commands += 1;
             }
             other => panic!("a block of another kind: {other}"),

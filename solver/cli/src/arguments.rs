@@ -146,13 +146,18 @@ pub enum Command {
         json: bool,
     },
     /// Print the certificate of a model; fails when it does not hold.
-    #[command(after_help = "Example: landau verify my.model --k 0.16")]
+    #[command(
+        after_help = "Examples:\n  landau verify my.model --k 0.16\n  landau verify my.model --k 0.16 --order 7"
+    )]
     Verify {
         /// A built model, or the path of a .model file.
         model: String,
         /// Wavenumber; the model's typical one by default.
         #[arg(long, allow_negative_numbers = true)]
         k: Option<f64>,
+        /// Order of the expansion whose defect is looked at.
+        #[arg(long, default_value_t = 3)]
+        order: usize,
         #[command(flatten)]
         common: Common,
     },

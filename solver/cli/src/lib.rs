@@ -113,8 +113,13 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
         Command::Reproduce { study, out, json } => {
             reproduce::reproduce(library, study.as_deref(), &out, json)
         }
-        Command::Verify { model, k, common } => with_setup(library, &model, &common, |setup| {
-            solve::verify(setup, k, &common)
+        Command::Verify {
+            model,
+            k,
+            order,
+            common,
+        } => with_setup(library, &model, &common, |setup| {
+            solve::verify(setup, k, order, &common)
         }),
     }
 }

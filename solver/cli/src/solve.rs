@@ -347,9 +347,9 @@ fn resumed(found: Resumed) {
     }
 }
 
-pub fn verify(setup: &Setup, k: Option<f64>, common: &Common) -> Result<()> {
+pub fn verify(setup: &Setup, k: Option<f64>, order: usize, common: &Common) -> Result<()> {
     let (k, selection) = asked(setup, k, common)?;
-    let certificate = Certificate::compute(setup, k, selection)?;
+    let certificate = Certificate::compute(setup, k, selection, order)?;
     if common.json {
         say!("{}", certificate.json());
     } else {

@@ -24,6 +24,19 @@ const ROUNDING: (f64, f64) = (32.0 * f64::EPSILON, 1e-6);
 /// The safety factor of differences that show rounding.
 const SAFETY: f64 = 5.0;
 
+/// Refuses an order that one mode has no coefficient of.
+///
+/// # Errors
+/// An even order, or one out of range.
+pub fn check_order(order: usize) -> Result<()> {
+    if !order.is_multiple_of(2) && (3..=HIGHEST).contains(&order) {
+        return Ok(());
+    }
+    Err(Error::input(format!(
+        "--order {order} is not available: it accepts odd numbers from 3 to {HIGHEST}"
+    )))
+}
+
 /// A mode that is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct ModeChoice {
@@ -274,8 +287,8 @@ fn settled(equations: &[Vec<Coefficient>]) -> AmplitudeSystem {
     }
 }
 
-/// The largest over the equations of |Σ next terms| / the largest term.
-fn next_order(system: &AmplitudeSystem, next: &AmplitudeSystem, z: &[C64]) -> f64 {
+/// A measure of trust: the largest over the equations of |Σ next terms| / the largest term.
+pub fn next_order(system: &AmplitudeSystem, next: &AmplitudeSystem, z: &[C64]) -> f64 {
     let rates = next.rates(z);
     let largest = |j: usize| {
         let terms = system.equations[j].iter();

@@ -1,7 +1,7 @@
 //! A Landau point with everything that it rests on: what `point` prints.
 
 use super::accuracy::{Accuracy, Resonance, accuracy, resonance};
-use super::amplitudes::{HIGHEST, errors, small_divisors};
+use super::amplitudes::{check_order, errors, small_divisors};
 use super::{Setup, check_wavenumber, sensitivity};
 use crate::base::BaseState;
 use crate::error::{Error, Result};
@@ -66,11 +66,7 @@ impl PointReport {
     /// finite number.
     pub fn compute(setup: &Setup, k: f64, selection: Selection, order: usize) -> Result<Self> {
         check_wavenumber(k)?;
-        if order.is_multiple_of(2) || !(3..=HIGHEST).contains(&order) {
-            return Err(Error::input(format!(
-                "--order {order} is not available: it accepts odd numbers from 3 to {HIGHEST}"
-            )));
-        }
+        check_order(order)?;
         let base = setup.base(None)?;
         setup.with_point(&base, k, selection, |point| {
             Self::of(setup, &base, point, order)

@@ -5,6 +5,7 @@ mod forms;
 mod order;
 
 use super::accuracy::{accuracy, resonance};
+use super::amplitudes::check_order;
 use super::quadrature::{adjoint_mode, second_landau};
 use super::{Setup, check_wavenumber};
 use crate::base::BaseState;
@@ -169,16 +170,17 @@ const PARTS: [&str; 5] = [
 ];
 
 impl Certificate {
-    /// All five parts at one wavenumber.
+    /// All five parts at one wavenumber, the first of them for the expansion to an odd order from 3 on.
     ///
     /// # Errors
     /// A point that cannot be computed at all.
-    pub fn compute(setup: &Setup, k: f64, selection: Selection) -> Result<Self> {
+    pub fn compute(setup: &Setup, k: f64, selection: Selection, order: usize) -> Result<Self> {
         check_wavenumber(k)?;
+        check_order(order)?;
         let base = setup.base(None)?;
         let mut checks = Vec::new();
         setup.with_point(&base, k, selection, |point| {
-            checks.extend(order::check(point)?);
+            checks.extend(order::check(point, order)?);
             checks.extend(adjointness::check(setup, &base, point)?);
             checks.extend(routes(point)?);
             checks.extend(forms::check(point.problem)?);

@@ -220,7 +220,7 @@ fn newton(
     least: f64,
 ) -> Option<(Vec<C64>, Vec<f64>)> {
     let (m, d) = (present.len(), symmetries.len());
-    let mut nu = vec![0.0; d];
+    let mut nu = best_frequencies(system, present, symmetries, &z);
     let start = z.iter().map(|z| z.norm()).fold(0.0, f64::max);
     let frequencies = |nu: &[f64]| -> Vec<f64> {
         let own = |j: usize| nu.iter().zip(symmetries).map(|(n, w)| n * w[j]).sum();
@@ -282,6 +282,27 @@ fn newton(
         }
     }
     None
+}
+
+/// The ν that come nearest to Im (dz_j/dt / z_j) = Σ_a ν_a w_aj.
+fn best_frequencies(
+    system: &AmplitudeSystem,
+    present: &[usize],
+    symmetries: &[Vec<f64>],
+    z: &[C64],
+) -> Vec<f64> {
+    let rates = system.rates(z);
+    let right = DVector::from_fn(present.len(), |i, _| (rates[present[i]] / z[present[i]]).im);
+    let matrix = DMatrix::from_fn(present.len(), symmetries.len(), |i, a| {
+        symmetries[a][present[i]]
+    });
+    if symmetries.is_empty() {
+        return Vec::new();
+    }
+    match matrix.svd(true, true).solve(&right, 1e-9) {
+        Ok(nu) => nu.iter().copied().collect(),
+        Err(_) => vec![0.0; symmetries.len()],
+    }
 }
 
 /// a dz + b dz̄ as a real two by two block.

@@ -115,6 +115,18 @@ pub enum Task {
     },
     /// a0(k) beside a0(2k)/2: they meet at the 2:1 resonance.
     Resonance { case: Vec<Case>, over: Axis },
+    /// A_e over k at every order and of the Padé approximant.
+    Orders {
+        case: Vec<Case>,
+        over: Axis,
+        /// An odd number from 5 on.
+        highest: usize,
+        /// Wavenumber and amplitude of states that were found without an expansion.
+        #[serde(default)]
+        reference: Vec<[f64; 2]>,
+    },
+    /// A mode at k with the one at 2k: coefficients and equilibria of the pair.
+    SecondHarmonic { case: Vec<Case>, over: Axis },
     /// Critical points, one row a case; a curve where `against` is a parameter of the cases.
     Critical {
         case: Vec<Case>,

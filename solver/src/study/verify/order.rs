@@ -40,8 +40,8 @@ pub struct ResidualOrder {
     pub row: String,
 }
 
-pub(super) fn check(point: &LandauPoint) -> Result<Vec<Check>> {
-    let expansion = Expansion::to(point.problem, vec![point.pair.clone()], 3)?;
+pub(super) fn check(point: &LandauPoint, order: usize) -> Result<Vec<Check>> {
+    let expansion = Expansion::to(point.problem, vec![point.pair.clone()], order)?;
     Ok(vec![order_check("order of the residual in A", &expansion)])
 }
 

@@ -1,5 +1,6 @@
 //! What a study can ask for, one module a sort of answer.
 
+mod beyond;
 mod curves;
 mod draw;
 mod planes;
@@ -40,6 +41,26 @@ pub(super) fn run(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Res
             columns,
         } => curves::sweep(shop, case, over, columns),
         Task::Resonance { case, over } => curves::resonance(shop, case, over),
+        Task::Orders {
+            case,
+            over,
+            highest,
+            reference,
+        } => {
+            if highest.is_multiple_of(2) || !(5..=15).contains(highest) {
+                return Err(Error::input(format!(
+                    "figure {figure}: highest = {highest} is no order: it accepts odd numbers from 5 to 15"
+                )));
+            }
+            let asked = beyond::Orders {
+                figure,
+                over,
+                highest: *highest,
+                reference,
+            };
+            beyond::orders(shop, case, &asked)
+        }
+        Task::SecondHarmonic { case, over } => beyond::second_harmonic(shop, case, over),
         Task::Critical {
             case,
             asked,
@@ -85,6 +106,8 @@ pub(super) fn cases(task: &Task) -> &[Case] {
         | Task::Spectrum { case, .. }
         | Task::Sweep { case, .. }
         | Task::Resonance { case, .. }
+        | Task::Orders { case, .. }
+        | Task::SecondHarmonic { case, .. }
         | Task::Critical { case, .. }
         | Task::Values { case }
         | Task::PowerLaw { case, .. }
