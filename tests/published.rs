@@ -254,7 +254,7 @@ fn poiseuille_from_many_intervals() {
                 "critical plane_poiseuille --vary R --from {a} --to {b} --minimize k={low}:{high} -M 56"
             );
             let found = json(&line);
-            close(&line, number(&found, "/value"), 5772.221_816_2, 1e-4);
+            close(&line, number(&found, "/value"), 5_772.221_816_2, 1e-4);
             close(&line, number(&found, "/k"), 1.020_547_449_3, 1e-7);
         }
     }
