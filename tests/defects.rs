@@ -34,7 +34,7 @@ fn with_expansion<R>(
 #[test]
 fn the_defect_falls_as_it_should() {
     type Case = (&'static str, usize, &'static [&'static str], &'static [f64]);
-    let cases: [Case; 8] = [
+    let cases: [Case; 10] = [
         ("swift_hohenberg", 10, &["r=0.1"], &[1.0]),
         ("swift_hohenberg", 10, &["r=0.3", "b=0.5"], &[0.62, 1.24]),
         ("kuramoto_sivashinsky", 10, &["nu=0.9", "delta=0.5"], &[1.0]),
@@ -46,6 +46,9 @@ fn the_defect_falls_as_it_should() {
         ),
         ("rayleigh_benard", 24, &["Ra=1800"], &[3.1]),
         ("brusselator", 10, &["B=4.2"], &[2.0]),
+        ("granular_couette", 10, &["e=0.8", "H=27"], &[3.0]),
+        // Linear balances: from fourth order on they are forced by the rates alone.
+        ("robin_strip", 24, &[], &[1.0]),
         ("plane_poiseuille", 60, &["R=5800"], &[1.02]),
         ("vibrated_bed", 40, &[], &[0.054, 0.108]),
     ];

@@ -30,6 +30,7 @@ fn series(criterion: &mut Criterion, model: &dyn Model) {
     let problem = Problem::new(model, &base, &discretisation, 50).expect("a problem");
     let pair = |k: f64| select(&problem, k, Selection::Leading).expect("a mode");
     let cases = [
+        ("order 3 by series", vec![pair(0.16)], 3),
         ("order 5", vec![pair(0.16)], 5),
         ("order 7", vec![pair(0.16)], 7),
         ("order 9", vec![pair(0.16)], 9),

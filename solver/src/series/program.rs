@@ -94,20 +94,6 @@ impl Program {
         self.steps.iter().filter_map(jet).collect()
     }
 
-    /// Whether the outputs are linear in the jets.
-    pub fn is_linear(&self) -> bool {
-        let series = |r: &Register| self.series[*r];
-        self.steps.iter().enumerate().all(|(register, step)| {
-            !self.series[register]
-                || match step {
-                    Step::Multiply(a, b) => !(series(a) && series(b)),
-                    Step::Divide(_, b) => !series(b),
-                    Step::Power(..) | Step::Function { .. } => false,
-                    _ => true,
-                }
-        })
-    }
-
     /// Which registers are i times real, if each is that or real.
     fn parities(&self, odd_jets: &[bool]) -> Option<Vec<bool>> {
         let mut odd: Vec<bool> = Vec::with_capacity(self.steps.len());

@@ -91,7 +91,6 @@ impl Forcing {
             let states = prepare.states(grid);
             groups.push(prepare.group(conditions, &walls, states, grid, rows.collect()));
         }
-        groups.retain(|group| !group.program.is_linear());
         Ok(Forcing { groups, jets })
     }
 
