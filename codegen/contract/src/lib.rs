@@ -5,6 +5,7 @@
 
 mod jet;
 mod kernel;
+pub mod layout;
 mod model;
 mod nearest;
 mod number;
@@ -14,7 +15,8 @@ mod tape;
 
 pub use jet::{End, Function, Jet, Operator, jet};
 pub use kernel::{Array, Kernel, ModelKernels, Operation, Register, apply};
-pub use model::{Model, choose, evaluate, output_length};
+pub use layout::{Linearised, Measure, PointState, StateLayout, output_length};
+pub use model::{Model, choose, evaluate};
 pub use nearest::nearest;
 pub use number::{C64, Number};
 pub use rounding::WithRounding;

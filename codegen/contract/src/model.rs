@@ -4,8 +4,9 @@
 //! this module knows where the kernels come from, or which model they belong to.
 
 use crate::kernel::Kernel;
+use crate::layout::output_length;
 use crate::number::C64;
-use crate::structure::{BaseJet, KernelId, ResidualId, Structure};
+use crate::structure::{KernelId, ResidualId, Structure};
 
 /// The interface between a model and the solver.
 ///
@@ -31,51 +32,6 @@ pub trait Model: Send + Sync {
     /// numbers of any kind: its inputs are the point state and the jets of [`Structure::residual_jets`], its outputs
     /// one value a balance or condition. Nothing where there are no conditions.
     fn residual(&self, residual: ResidualId) -> Option<&Kernel>;
-}
-
-/// Number of outputs of a real kernel.
-pub fn output_length(structure: &Structure, kernel: KernelId) -> usize {
-    let jets = |list: &Vec<BaseJet>| 1 + list.len();
-    match kernel {
-        KernelId::Interval => 2,
-        KernelId::Closed => structure.fields.len() * (structure.base_order + 1),
-        KernelId::Guess => structure.base.solved.len(),
-        KernelId::Base => structure.base.rows.iter().map(|r| jets(&r.jets)).sum(),
-        KernelId::BaseIntegrals => structure.base.integrals.iter().map(|i| jets(i) + 1).sum(),
-        KernelId::Automatic => structure.base.automatic.len(),
-        KernelId::BaseConditions(case) => structure.cases[case]
-            .base_conditions
-            .iter()
-            .map(|c| jets(&c.jets))
-            .sum(),
-        KernelId::Divisors => structure.balances.len(),
-        KernelId::Linear => structure.linear.len(),
-        KernelId::Adjoint => structure.adjoint.len(),
-        KernelId::Nonlinear => structure.form_coefficients,
-        KernelId::Conditions(case) => structure.cases[case]
-            .conditions
-            .iter()
-            .map(|c| c.monomials.len())
-            .sum(),
-        KernelId::AdjointConditions(case) => match &structure.cases[case].adjoint {
-            Ok(conditions) => conditions.iter().map(|c| c.jets.len()).sum(),
-            Err(_) => 0,
-        },
-        KernelId::Closures(case) => structure.cases[case]
-            .closures
-            .iter()
-            .map(|c| c.density.len() + c.column.len())
-            .sum(),
-        KernelId::Amplitude => match structure.amplitude.field {
-            Some(_) => 2,
-            None => structure.amplitude.weighted.len() + 1,
-        },
-        KernelId::Outputs => structure
-            .outputs
-            .iter()
-            .map(|o| 1 + o.monomials.len())
-            .sum(),
-    }
 }
 
 /// Runs a real kernel at one point into a new vector.

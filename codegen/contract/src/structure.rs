@@ -4,6 +4,7 @@
 //! runs from its tape.
 
 use crate::jet::{End, Jet};
+use crate::layout::StateLayout;
 
 /// Everything about a model that is not a kernel.
 #[derive(Clone, Debug, PartialEq)]
@@ -214,8 +215,8 @@ pub enum ClosureKind {
     Unknown,
 }
 
-/// The real kernels of a model. All read the point state
-/// `[y, k, parameters…, base field 0 and its y-derivatives to base_order, base field 1, …]`.
+/// The real kernels of a model. All read the point state of [`StateLayout`]; [`crate::layout`] says what their
+/// outputs are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelId {
     /// The two ends of the interval.
@@ -259,14 +260,14 @@ pub enum ResidualId {
 }
 
 impl Structure {
-    /// Length of the point state.
-    pub fn state_length(&self) -> usize {
-        2 + self.parameters.len() + self.fields.len() * (self.base_order + 1)
+    /// Where what stands in the point state.
+    pub fn state(&self) -> StateLayout {
+        StateLayout::new(self.parameters.len(), self.fields.len(), self.base_order)
     }
 
     /// Position of a base jet in the point state.
     pub fn base_position(&self, field: usize, order: usize) -> usize {
-        2 + self.parameters.len() + field * (self.base_order + 1) + order
+        self.state().base(field, order)
     }
 
     /// The value of a jet in the base state at a point: zero for one with ∂x or ∂t in it.

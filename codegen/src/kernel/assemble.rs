@@ -66,28 +66,25 @@ impl Assembler<'_> {
     }
 
     /// A residual and its derivative by each base jet it holds.
-    fn with_jacobian(&mut self, residual: Id, outputs: &mut Vec<Id>) -> Vec<BaseJet> {
-        let opened = self.open(residual);
+    fn with_jacobian(&mut self, residual: Id) -> (Vec<BaseJet>, Linearised<Id>) {
+        let value = self.open(residual);
         let mut atoms = BTreeSet::new();
-        for node in self.graph.topological(&[opened]) {
+        for node in self.graph.topological(&[value]) {
             if let Node::Base(field, order) = self.graph.node(node) {
                 atoms.insert((*field, *order));
             }
         }
-        outputs.push(opened);
-        for &(field, order) in &atoms {
-            outputs.push(
-                self.graph
-                    .differentiate(opened, Variable::Base(field, order)),
-            );
-        }
-        atoms
-            .into_iter()
-            .map(|(field, order)| BaseJet {
-                field,
-                order: usize::from(order),
-            })
-            .collect()
+        let slope = |&(field, order): &(usize, u8)| {
+            self.graph
+                .differentiate(value, Variable::Base(field, order))
+        };
+        let slopes = atoms.iter().map(slope).collect();
+        let jet = |(field, order): (usize, u8)| BaseJet {
+            field,
+            order: usize::from(order),
+        };
+        let jets = atoms.into_iter().map(jet).collect();
+        (jets, Linearised { value, slopes })
     }
 
     fn structure(&mut self) -> Structure {
@@ -197,18 +194,20 @@ impl Assembler<'_> {
         let mut outputs = Vec::new();
         let mut rows = Vec::new();
         for row in &operators.base {
-            let jets = self.with_jacobian(row.residual, &mut outputs);
+            let (jets, linearised) = self.with_jacobian(row.residual);
             let balance = row.balance;
             rows.push(BaseRowInfo { balance, jets });
+            outputs.push(linearised);
         }
-        self.kernel(KernelId::Base, outputs);
+        self.kernel(KernelId::Base, layout::write_linearised(outputs));
         let mut outputs = Vec::new();
         let mut integrals = Vec::new();
         for &(integrand, value) in &operators.base_integrals {
-            integrals.push(self.with_jacobian(integrand, &mut outputs));
-            outputs.push(value);
+            let (jets, linearised) = self.with_jacobian(integrand);
+            integrals.push(jets);
+            outputs.push((linearised, value));
         }
-        self.kernel(KernelId::BaseIntegrals, outputs);
+        self.kernel(KernelId::BaseIntegrals, layout::write_integrals(outputs));
         let mut guesses = Vec::new();
         for &field in &operators.solved {
             guesses.push(model.base.guesses[field].unwrap_or_else(|| self.graph.zero()));
@@ -256,37 +255,41 @@ impl Assembler<'_> {
         let mut outputs = Vec::new();
         let mut base_conditions = Vec::new();
         for condition in &case.base_conditions {
-            let jets = self.with_jacobian(condition.residual, &mut outputs);
+            let (jets, linearised) = self.with_jacobian(condition.residual);
             base_conditions.push(BaseConditionInfo {
                 end: condition.end,
                 jets,
             });
+            outputs.push(linearised);
         }
+        let outputs = layout::write_linearised(outputs);
         self.kernel(KernelId::BaseConditions(index), outputs);
 
         let mut coefficients = Vec::new();
         let mut conditions = Vec::new();
         for condition in &case.conditions {
-            coefficients.extend(condition.form.terms.values().copied());
+            coefficients.push(condition.form.terms.values().copied().collect());
             let monomials = condition.form.terms.keys().cloned().collect();
             conditions.push(ConditionInfo {
                 end: condition.end,
                 monomials,
             });
         }
+        let coefficients = layout::write_conditions(coefficients);
         self.opened(KernelId::Conditions(index), coefficients);
 
         let mut coefficients = Vec::new();
         let adjoint = case.adjoint.clone().map(|list| {
             let mut infos = Vec::new();
             for condition in list {
-                let mut jets = Vec::new();
+                let (mut jets, mut own) = (Vec::new(), Vec::new());
                 for (jet, symbol) in condition.combination {
                     for ((x, absx), id) in symbol {
                         jets.push(Jet { x, absx, ..jet });
-                        coefficients.push(id);
+                        own.push(id);
                     }
                 }
+                coefficients.push(own);
                 infos.push(AdjointConditionInfo {
                     end: condition.end,
                     jets,
@@ -294,6 +297,7 @@ impl Assembler<'_> {
             }
             infos
         });
+        let coefficients = layout::write_conditions(coefficients);
         self.opened(KernelId::AdjointConditions(index), coefficients);
 
         let mut coefficients = Vec::new();
@@ -318,8 +322,10 @@ impl Assembler<'_> {
                     (ClosureKind::Unknown, Some(field), density, Vec::new())
                 }
             };
-            coefficients.extend(density.iter().map(|(_, id)| *id));
-            coefficients.extend(column.iter().map(|(_, id)| *id));
+            coefficients.push(layout::ClosureWeights {
+                density: density.iter().map(|(_, id)| *id).collect(),
+                column: column.iter().map(|(_, id)| *id).collect(),
+            });
             closures.push(ClosureInfo {
                 kind,
                 field,
@@ -327,6 +333,7 @@ impl Assembler<'_> {
                 column: column.into_iter().map(|(row, _)| row).collect(),
             });
         }
+        let coefficients = layout::write_closures(coefficients);
         self.opened(KernelId::Closures(index), coefficients);
         CaseInfo {
             choices: case.choices.clone(),
@@ -339,19 +346,13 @@ impl Assembler<'_> {
     }
 
     fn amplitude(&mut self) -> AmplitudeInfo {
-        let (outputs, info) = match &self.model.amplitude {
+        let (measure, weighted, field) = match &self.model.amplitude {
             Amplitude::Integral { weights, value, .. } => {
-                let mut outputs: Vec<Id> = weights.iter().map(|w| w.weight).collect();
-                outputs.push(*value);
-                let weighted = weights.iter().map(|w| w.field).collect();
-                (
-                    outputs,
-                    AmplitudeInfo {
-                        weighted,
-                        field: None,
-                        description: String::new(),
-                    },
-                )
+                let measure = Measure::Integral {
+                    weights: weights.iter().map(|w| w.weight).collect(),
+                    value: *value,
+                };
+                (measure, weights.iter().map(|w| w.field).collect(), None)
             }
             Amplitude::Point {
                 field,
@@ -359,22 +360,18 @@ impl Assembler<'_> {
                 value,
                 ..
             } => {
-                let place = place.unwrap_or_else(|| self.graph.zero());
-                (
-                    vec![*value, place],
-                    AmplitudeInfo {
-                        weighted: Vec::new(),
-                        field: Some(*field),
-                        description: String::new(),
-                    },
-                )
+                let measure = Measure::Point {
+                    value: *value,
+                    place: place.unwrap_or_else(|| self.graph.zero()),
+                };
+                (measure, Vec::new(), Some(*field))
             }
         };
-        let description = self.describe_amplitude();
-        self.kernel(KernelId::Amplitude, outputs);
+        self.kernel(KernelId::Amplitude, layout::write_measure(measure));
         AmplitudeInfo {
-            description,
-            ..info
+            weighted,
+            field,
+            description: self.describe_amplitude(),
         }
     }
 
@@ -414,8 +411,10 @@ impl Assembler<'_> {
         let mut coefficients = Vec::new();
         let mut infos = Vec::new();
         for (output, form) in self.model.outputs.iter().zip(&self.operators.outputs) {
-            coefficients.push(output.place.unwrap_or_else(|| self.graph.zero()));
-            coefficients.extend(form.terms.values().copied());
+            coefficients.push(layout::OutputTerms {
+                place: output.place.unwrap_or_else(|| self.graph.zero()),
+                coefficients: form.terms.values().copied().collect(),
+            });
             infos.push(OutputInfo {
                 name: output.name.clone(),
                 doc: output.doc.clone(),
@@ -423,7 +422,7 @@ impl Assembler<'_> {
                 monomials: form.terms.keys().cloned().collect(),
             });
         }
-        self.opened(KernelId::Outputs, coefficients);
+        self.opened(KernelId::Outputs, layout::write_outputs(coefficients));
         infos
     }
 }

@@ -28,13 +28,12 @@ impl Assembler<'_> {
         let residual_jets = structure.residual_jets.clone();
         let forms = self.forms(&structure);
         let graph = &*self.graph;
+        let state = structure.state();
         let locate = |node: &Node| match node {
-            Node::Coordinate => Some((0, 0)),
-            Node::Wavenumber => Some((0, 1)),
-            Node::Parameter(index) => Some((0, 2 + index)),
-            Node::Base(field, order) => {
-                Some((0, structure.base_position(*field, usize::from(*order))))
-            }
+            Node::Coordinate => Some((0, state.coordinate())),
+            Node::Wavenumber => Some((0, state.wavenumber())),
+            Node::Parameter(index) => Some((0, state.parameter(*index))),
+            Node::Base(field, order) => Some((0, state.base(*field, usize::from(*order)))),
             _ => None,
         };
         let point = || {
@@ -58,9 +57,9 @@ impl Assembler<'_> {
             })
             .collect();
         let locate = |node: &Node| match node {
-            Node::Coordinate => Some((0, 0)),
-            Node::Wavenumber => Some((0, 1)),
-            Node::Parameter(index) => Some((0, 2 + index)),
+            Node::Coordinate => Some((0, state.coordinate())),
+            Node::Wavenumber => Some((0, state.wavenumber())),
+            Node::Parameter(index) => Some((0, state.parameter(*index))),
             Node::Jet(jet) => residual_jets.iter().position(|j| j == jet).map(|p| (1, p)),
             _ => None,
         };

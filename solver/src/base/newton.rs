@@ -6,7 +6,8 @@
 
 use super::state::{BaseState, interval};
 use crate::collocation::{Grid, GridKind, Stretch, clenshaw_curtis, coefficients};
-use crate::model::{BaseJet, End, KernelId, Model, evaluate};
+use crate::model::layout::{read_base_conditions, read_base_row, read_integral};
+use crate::model::{BaseJet, End, KernelId, Linearised, Model, evaluate};
 use crate::parameters::Parameters;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
@@ -269,17 +270,13 @@ impl Discrete<'_> {
         let state = self.state(values, 0.0);
         let mut rows: Vec<(f64, Vec<f64>)> = Vec::with_capacity(self.size);
         for (index, row) in structure.base.rows.iter().enumerate() {
-            let position: usize = structure.base.rows[..index]
-                .iter()
-                .map(|r| 1 + r.jets.len())
-                .sum();
             for (i, &eta) in self.rows[index].nodes.iter().enumerate() {
                 let point = state.point(model, self.stretch.xi(eta), 0.0);
                 let out = evaluate(model, KernelId::Base, &point);
-                let slopes = &out[position + 1..=position + row.jets.len()];
+                let Linearised { value, slopes } = read_base_row(&structure.base.rows, index, &out);
                 rows.push((
-                    out[position],
-                    self.jacobian_row(&row.jets, slopes, |column| &column.rows[index], i),
+                    value,
+                    self.jacobian_row(&row.jets, &slopes, |column| &column.rows[index], i),
                 ));
             }
         }
@@ -288,16 +285,11 @@ impl Discrete<'_> {
             let side = usize::from(end == End::Upper);
             let point = state.at_end(model, end);
             let out = evaluate(model, KernelId::BaseConditions(self.case), &point);
-            let mut position = 0;
-            for condition in &case.base_conditions {
-                let slopes = &out[position + 1..=position + condition.jets.len()];
-                if condition.end == end {
-                    rows.push((
-                        out[position],
-                        self.jacobian_row(&condition.jets, slopes, |column| &column.ends[side], 0),
-                    ));
-                }
-                position += 1 + condition.jets.len();
+            for (jets, Linearised { value, slopes }) in read_base_conditions(case, end, &out) {
+                rows.push((
+                    value,
+                    self.jacobian_row(jets, &slopes, |column| &column.ends[side], 0),
+                ));
             }
         }
         self.integral_rows(&state, &mut rows);
@@ -324,28 +316,28 @@ impl Discrete<'_> {
         let structure = model.structure();
         let weights = clenshaw_curtis(self.degree + 1);
         let half = 0.5 * (self.upper - self.lower);
-        let mut position = 0;
-        for jets in &structure.base.integrals {
+        let integrals = &structure.base.integrals;
+        for (index, jets) in integrals.iter().enumerate() {
             let (mut total, mut row) = (0.0, vec![0.0; self.size]);
             let all = Grid::new(GridKind::Lobatto(self.degree + 1));
             for (i, &eta) in all.nodes.iter().enumerate() {
                 let xi = self.stretch.xi(eta);
                 let out = evaluate(model, KernelId::BaseIntegrals, &state.point(model, xi, 0.0));
-                let slopes = &out[position + 1..=position + jets.len()];
+                let (Linearised { value, slopes }, prescribed) =
+                    read_integral(integrals, index, &out);
                 let weight = weights[i] * half / self.stretch.taylor(xi, 1)[0];
-                total += weight * out[position];
+                total += weight * value;
                 if i == 0 {
-                    total -= out[position + jets.len() + 1];
+                    total -= prescribed;
                 }
                 for (entry, slope) in
                     row.iter_mut()
-                        .zip(self.jacobian_row(jets, slopes, |column| &column.all, i))
+                        .zip(self.jacobian_row(jets, &slopes, |column| &column.all, i))
                 {
                     *entry += weight * slope;
                 }
             }
             rows.push((total, row));
-            position += jets.len() + 2;
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::collocation::{Stretch, derivative_values};
 use crate::error::{Error, Result};
-use crate::model::{End, KernelId, Model, ResidualId, WithRounding, evaluate};
+use crate::model::{End, KernelId, Model, PointState, ResidualId, WithRounding, evaluate};
 use crate::parameters::Parameters;
 
 /// Places at which a closed base state is checked against its balances.
@@ -79,9 +79,8 @@ pub struct BaseState {
 
 /// The ends of the interval at these parameters.
 pub(super) fn interval(model: &dyn Model, parameters: &Parameters) -> (f64, f64) {
-    let mut point = vec![0.0; model.structure().state_length()];
-    point[2..2 + parameters.values.len()].copy_from_slice(&parameters.values);
-    let ends = evaluate(model, KernelId::Interval, &point);
+    let point = PointState::new(model.structure().state(), 0.0, 0.0, &parameters.values);
+    let ends = evaluate(model, KernelId::Interval, point.values());
     (ends[0], ends[1])
 }
 
@@ -122,24 +121,20 @@ impl BaseState {
     /// The point state at ξ; see [`KernelId`] for its layout. `k` enters the amplitude alone.
     pub fn point(&self, model: &dyn Model, xi: f64, k: f64) -> Vec<f64> {
         let structure = model.structure();
-        let mut point = vec![0.0; structure.state_length()];
-        point[0] = self.y(xi);
-        point[1] = k;
-        point[2..2 + self.parameters.values.len()].copy_from_slice(&self.parameters.values);
-        let closed = evaluate(model, KernelId::Closed, &point);
-        let first = structure.base_position(0, 0);
-        point[first..].copy_from_slice(&closed);
+        let mut point = PointState::new(structure.state(), self.y(xi), k, &self.parameters.values);
+        let closed = evaluate(model, KernelId::Closed, point.values());
+        point.set_closed(&closed);
         let eta = self.stretch.eta(xi);
         for (&field, series) in structure.base.solved.iter().zip(&self.series) {
             let mut scale = 1.0;
             let derivatives = derivative_values(series, eta, structure.base_order);
             let derivatives = self.stretch.compose(xi, &derivatives);
             for (order, value) in derivatives.into_iter().enumerate() {
-                point[structure.base_position(field, order)] = value * scale;
+                point.set_base(field, order, value * scale);
                 scale *= self.scale();
             }
         }
-        point
+        point.into_values()
     }
 
     /// The point state at an end.

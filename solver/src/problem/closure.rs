@@ -7,6 +7,7 @@
 use crate::base::BaseState;
 use crate::collocation::{Block, Discretisation, Grid, GridKind, Layout, clenshaw_curtis};
 use crate::error::{Error, Result};
+use crate::model::layout::{ClosureWeights, read_closure, read_terms};
 use crate::model::{ClosureInfo, ClosureKind, Jet, KernelId, Model, evaluate};
 
 /// One border: a row that closes the problem, and the column of its multiplier.
@@ -48,13 +49,6 @@ struct Closures<'a> {
     model: &'a dyn Model,
     base: &'a BaseState,
     discretisation: &'a Discretisation,
-}
-
-/// Weights of one closure at one place.
-struct Weights {
-    density: Vec<f64>,
-    /// By balance, as `ClosureInfo::column` lists them.
-    column: Vec<f64>,
 }
 
 /// The borders of the direct problem.
@@ -168,18 +162,10 @@ impl Closures<'_> {
     }
 
     /// The weights of one closure at ξ.
-    fn at(&self, index: usize, xi: f64) -> Weights {
+    fn at(&self, index: usize, xi: f64) -> ClosureWeights<f64> {
         let kernel = KernelId::Closures(self.base.case);
         let all = evaluate(self.model, kernel, &self.base.point(self.model, xi, 0.0));
-        let length = |info: &ClosureInfo| info.density.len() + info.column.len();
-        let infos = self.infos();
-        let first: usize = infos[..index].iter().map(length).sum();
-        let (density, column) =
-            all[first..][..length(&infos[index])].split_at(infos[index].density.len());
-        Weights {
-            density: density.to_vec(),
-            column: column.to_vec(),
-        }
+        read_closure(self.infos(), index, &all)
     }
 
     /// Σ ∫ weight · jet dy as a row over the unknowns, by spectral quadrature.
@@ -254,7 +240,7 @@ impl Closures<'_> {
         let point = self.base.point(self.model, xi, 0.0);
         let coefficients = evaluate(self.model, KernelId::Linear, &point);
         let mut weights = vec![0.0; structure.balances.len()];
-        for (term, coefficient) in structure.linear.iter().zip(&coefficients) {
+        for (term, coefficient) in read_terms(&structure.linear, &coefficients) {
             if term.jet.t == 0 && Some(usize::from(term.jet.field)) == field {
                 weights[term.row] -= coefficient;
             }

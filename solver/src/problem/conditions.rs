@@ -1,6 +1,7 @@
 //! Boundary conditions as rows: linear parts for the matrix, higher degrees for the right-hand side.
 
 use crate::base::BaseState;
+use crate::model::layout::{read_adjoint_conditions, read_conditions};
 use crate::model::{End, Jet, KernelId, Model, evaluate};
 
 /// One boundary condition: Σ coefficient · Π jets, jets of one field or of several.
@@ -16,25 +17,24 @@ pub fn direct(model: &dyn Model, base: &BaseState) -> Vec<WallRow> {
     let case = &model.structure().cases[base.case];
     let kernel = KernelId::Conditions(base.case);
     let values = End::BOTH.map(|end| evaluate(model, kernel, &base.at_end(model, end)));
-    let mut position = 0;
-    let mut rows = Vec::new();
-    for condition in &case.conditions {
+    let [lower, upper] = &values;
+    let row = |(end, monomials): (End, Vec<(&[Jet], f64)>)| {
         let mut row = WallRow {
-            end: condition.end,
+            end,
             linear: Vec::new(),
             nonlinear: Vec::new(),
         };
-        for monomial in &condition.monomials {
-            let coefficient = values[usize::from(condition.end == End::Upper)][position];
-            position += 1;
-            match monomial.as_slice() {
+        for (monomial, coefficient) in monomials {
+            match monomial {
                 [jet] => row.linear.push((*jet, coefficient)),
-                _ => row.nonlinear.push((monomial.clone(), coefficient)),
+                _ => row.nonlinear.push((monomial.to_vec(), coefficient)),
             }
         }
-        rows.push(row);
-    }
-    rows
+        row
+    };
+    read_conditions(&case.conditions, [lower, upper])
+        .map(row)
+        .collect()
 }
 
 /// The adjoint conditions, or why there are none.
@@ -43,22 +43,13 @@ pub fn adjoint(model: &dyn Model, base: &BaseState) -> Result<Vec<WallRow>, Stri
     let conditions = case.adjoint.as_ref().map_err(Clone::clone)?;
     let kernel = KernelId::AdjointConditions(base.case);
     let values = End::BOTH.map(|end| evaluate(model, kernel, &base.at_end(model, end)));
-    let mut position = 0;
-    let mut rows = Vec::new();
-    for condition in conditions {
-        let mut linear = Vec::new();
-        for jet in &condition.jets {
-            linear.push((
-                *jet,
-                values[usize::from(condition.end == End::Upper)][position],
-            ));
-            position += 1;
-        }
-        rows.push(WallRow {
-            end: condition.end,
-            linear,
-            nonlinear: Vec::new(),
-        });
-    }
-    Ok(rows)
+    let [lower, upper] = &values;
+    let row = |(end, linear): (End, Vec<(Jet, f64)>)| WallRow {
+        end,
+        linear,
+        nonlinear: Vec::new(),
+    };
+    Ok(read_adjoint_conditions(conditions, [lower, upper])
+        .map(row)
+        .collect())
 }

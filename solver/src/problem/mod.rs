@@ -20,7 +20,8 @@ pub use mirror::Solver;
 use crate::base::BaseState;
 use crate::collocation::{Discretisation, Grid, GridKind, Layout, clenshaw_curtis};
 use crate::error::{Error, Result};
-use crate::model::{C64, Jet, KernelId, Model, OffsetsInfo, Structure, evaluate};
+use crate::model::layout::read_measure;
+use crate::model::{C64, Jet, KernelId, Measure, Model, OffsetsInfo, Structure, evaluate};
 use faer::Mat;
 use std::sync::OnceLock;
 
@@ -342,7 +343,8 @@ fn gram(
     discretisation: &Discretisation,
     resolution: usize,
 ) -> Vec<Mat<f64>> {
-    let fields = &model.structure().amplitude.weighted;
+    let amplitude = &model.structure().amplitude;
+    let fields = &amplitude.weighted;
     let (grid, half) = match resolution {
         0 => (GridKind::Point, 0.5),
         m => (
@@ -357,7 +359,13 @@ fn gram(
     let quadrature = clenshaw_curtis(nodes.len());
     let weights: Vec<Vec<f64>> = nodes
         .iter()
-        .map(|&xi| evaluate(model, KernelId::Amplitude, &base.point(model, xi, 0.0)))
+        .map(|&xi| {
+            let out = evaluate(model, KernelId::Amplitude, &base.point(model, xi, 0.0));
+            match read_measure(amplitude, &out) {
+                Measure::Integral { weights, .. } => weights,
+                Measure::Point { .. } => Vec::new(),
+            }
+        })
         .collect();
     let form = |(position, &field): (usize, &usize)| {
         let values = discretisation.matrix(layout.columns[field].grid, grid, 0);

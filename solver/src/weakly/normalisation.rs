@@ -2,7 +2,8 @@
 
 use crate::collocation::{Grid, GridKind, clenshaw_curtis};
 use crate::error::{Error, Result};
-use crate::model::{C64, KernelId, evaluate};
+use crate::model::layout::read_measure;
+use crate::model::{C64, KernelId, Measure, evaluate};
 use crate::problem::{Problem, quarter_turn};
 
 /// Sizes of a fundamental whose powers double precision can hold.
@@ -30,15 +31,14 @@ pub fn normalise(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
 }
 
 fn unchecked(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
-    let structure = problem.structure();
-    let amplitude = &structure.amplitude;
+    let amplitude = &problem.structure().amplitude;
+    let state = problem.base.point(problem.model, 0.0, k);
+    let out = evaluate(problem.model, KernelId::Amplitude, &state);
+    let (wanted, place) = match read_measure(amplitude, &out) {
+        Measure::Point { value, place } => (value.abs(), place),
+        Measure::Integral { value, .. } => (value, 0.0),
+    };
     if let Some(field) = amplitude.field {
-        let out = evaluate(
-            problem.model,
-            KernelId::Amplitude,
-            &problem.base.point(problem.model, 0.0, k),
-        );
-        let (wanted, place) = (out[0].abs(), out[1]);
         let value = point_value(problem, values, field, place);
         if wanted.is_nan() || wanted <= 0.0 {
             return Err(vanishes(problem));
@@ -50,7 +50,7 @@ fn unchecked(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
         }
         return Ok(turn(problem, field) * value.conj() / value.norm_sqr() * wanted);
     }
-    let (square, wanted) = weighted_square(problem, k, values);
+    let square = weighted_square(problem, values);
     if !(square > 0.0 && wanted > 0.0) {
         return Err(vanishes(problem));
     }
@@ -79,8 +79,8 @@ fn point_value(problem: &Problem, values: &[C64], field: usize, place: f64) -> C
         .sum()
 }
 
-/// ∫ Σ w|q|² dy and the value it should have.
-fn weighted_square(problem: &Problem, k: f64, values: &[C64]) -> (f64, f64) {
+/// ∫ Σ w|q|² dy
+fn weighted_square(problem: &Problem, values: &[C64]) -> f64 {
     let fields = &problem.structure().amplitude.weighted;
     let mut square = 0.0;
     for (&field, gram) in fields.iter().zip(&problem.gram) {
@@ -96,11 +96,7 @@ fn weighted_square(problem: &Problem, k: f64, values: &[C64]) -> (f64, f64) {
             square += (product * y).re;
         }
     }
-    let point = problem.base.point(problem.model, 0.0, k);
-    (
-        square,
-        evaluate(problem.model, KernelId::Amplitude, &point)[fields.len()],
-    )
+    square
 }
 
 /// A grid on which products of two profiles integrate exactly.

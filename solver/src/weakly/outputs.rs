@@ -4,6 +4,7 @@ use super::cubic::LandauPoint;
 use super::mode::Mode;
 use super::normalisation::{quadrature_grid, quadrature_weights};
 use crate::collocation::{Grid, GridKind};
+use crate::model::layout::read_output;
 use crate::model::{C64, Jet, KernelId, evaluate};
 use crate::problem::Problem;
 
@@ -15,32 +16,26 @@ pub fn outputs(point: &LandauPoint) -> Vec<[f64; 2]> {
     let conjugate = fundamental.conjugate();
     let k = point.k();
     let grid = quadrature_grid(problem);
-    let mut position = 0;
+    let terms_at = |index: usize, xi: f64| {
+        let state = problem.base.point(problem.model, xi, k);
+        let out = evaluate(problem.model, KernelId::Outputs, &state);
+        read_output(&structure.outputs, index, &out)
+    };
     let mut values = Vec::new();
-    for output in &structure.outputs {
+    for (index, output) in structure.outputs.iter().enumerate() {
         // Nodes with weights: one place, or a quadrature.
-        let first = evaluate(
-            problem.model,
-            KernelId::Outputs,
-            &problem.base.point(problem.model, -1.0, k),
-        );
         let (nodes, weights) = if output.at_point && problem.resolution > 0 {
-            (
-                vec![-1.0 + (first[position] - problem.base.lower) * problem.base.scale()],
-                vec![1.0],
-            )
+            let place = terms_at(index, -1.0).place;
+            let xi = -1.0 + (place - problem.base.lower) * problem.base.scale();
+            (vec![xi], vec![1.0])
         } else {
             (Grid::new(grid).nodes, quadrature_weights(problem, grid))
         };
         let mut total = [0.0; 2];
         for (xi, weight) in nodes.iter().zip(&weights) {
-            let out = evaluate(
-                problem.model,
-                KernelId::Outputs,
-                &problem.base.point(problem.model, *xi, k),
-            );
-            for (offset, monomial) in output.monomials.iter().enumerate() {
-                let coefficient = weight * out[position + 1 + offset];
+            let coefficients = terms_at(index, *xi).coefficients;
+            for (monomial, coefficient) in output.monomials.iter().zip(coefficients) {
+                let coefficient = weight * coefficient;
                 match monomial.as_slice() {
                     [] => total[0] += coefficient,
                     [jet] => total[1] += coefficient * value_at(mean, problem, *jet, *xi).re,
@@ -53,7 +48,6 @@ pub fn outputs(point: &LandauPoint) -> Vec<[f64; 2]> {
                 }
             }
         }
-        position += 1 + output.monomials.len();
         values.push(total);
     }
     values

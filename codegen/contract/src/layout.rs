@@ -1,0 +1,442 @@
+//! What stands where: the point state that kernels read, and their outputs one after another. The generator writes
+//! and the solver reads through this file alone.
+
+use crate::jet::{End, Jet};
+use crate::structure::{
+    AdjointConditionInfo, AmplitudeInfo, BaseJet, BaseRowInfo, CaseInfo, ClosureInfo,
+    ConditionInfo, KernelId, OutputInfo, Structure, TermInfo,
+};
+
+/// A value with its derivative by each of some base jets.
+#[derive(Clone, Debug)]
+pub struct Linearised<T> {
+    /// The value.
+    pub value: T,
+    /// Its derivatives, in the order of the jets.
+    pub slopes: Vec<T>,
+}
+
+impl<T> Linearised<T> {
+    fn write(self, out: &mut Vec<T>) {
+        out.push(self.value);
+        out.extend(self.slopes);
+    }
+}
+
+/// Values taken off the front, one shape after another.
+struct Reader<'a> {
+    rest: &'a [f64],
+}
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, count: usize) -> &'a [f64] {
+        let (taken, rest) = self.rest.split_at(count);
+        self.rest = rest;
+        taken
+    }
+
+    fn number(&mut self) -> f64 {
+        self.take(1)[0]
+    }
+
+    fn linearised(&mut self, jets: &[BaseJet]) -> Linearised<f64> {
+        Linearised {
+            value: self.number(),
+            slopes: self.take(jets.len()).to_vec(),
+        }
+    }
+}
+
+/// [`KernelId::Base`], [`KernelId::BaseConditions`]: residuals with their derivatives.
+pub fn write_linearised<T>(rows: Vec<Linearised<T>>) -> Vec<T> {
+    let mut out = Vec::new();
+    rows.into_iter().for_each(|row| row.write(&mut out));
+    out
+}
+
+/// One row of the base problem: [`KernelId::Base`].
+pub fn read_base_row(rows: &[BaseRowInfo], index: usize, out: &[f64]) -> Linearised<f64> {
+    let mut reader = Reader { rest: out };
+    let before = rows[..index].iter();
+    before.for_each(|row| {
+        reader.linearised(&row.jets);
+    });
+    reader.linearised(&rows[index].jets)
+}
+
+/// The conditions of the base state at one end: [`KernelId::BaseConditions`].
+pub fn read_base_conditions<'a>(
+    case: &'a CaseInfo,
+    end: End,
+    out: &[f64],
+) -> Vec<(&'a [BaseJet], Linearised<f64>)> {
+    let mut reader = Reader { rest: out };
+    let read = case.base_conditions.iter().map(|condition| {
+        let value = reader.linearised(&condition.jets);
+        (condition, value)
+    });
+    let read: Vec<_> = read.collect();
+    let own = read.into_iter().filter(|(c, _)| c.end == end);
+    own.map(|(c, value)| (c.jets.as_slice(), value)).collect()
+}
+
+/// [`KernelId::BaseIntegrals`]: integrands with their derivatives, each with the prescribed value.
+pub fn write_integrals<T>(integrals: Vec<(Linearised<T>, T)>) -> Vec<T> {
+    let mut out = Vec::new();
+    for (integrand, prescribed) in integrals {
+        integrand.write(&mut out);
+        out.push(prescribed);
+    }
+    out
+}
+
+/// Integrand and prescribed value of one integral: [`KernelId::BaseIntegrals`].
+pub fn read_integral(
+    integrals: &[Vec<BaseJet>],
+    index: usize,
+    out: &[f64],
+) -> (Linearised<f64>, f64) {
+    let mut reader = Reader { rest: out };
+    for jets in &integrals[..index] {
+        reader.linearised(jets);
+        reader.number();
+    }
+    (reader.linearised(&integrals[index]), reader.number())
+}
+
+/// [`KernelId::Conditions`], [`KernelId::AdjointConditions`]: the coefficients of each condition.
+pub fn write_conditions<T>(conditions: Vec<Vec<T>>) -> Vec<T> {
+    conditions.into_iter().flatten().collect()
+}
+
+/// Each condition with its monomials and their coefficients: [`KernelId::Conditions`] at the lower and the upper end.
+pub fn read_conditions<'a>(
+    conditions: &'a [ConditionInfo],
+    out: [&'a [f64]; 2],
+) -> impl Iterator<Item = (End, Vec<(&'a [Jet], f64)>)> {
+    let mut readers = out.map(|rest| Reader { rest });
+    conditions.iter().map(move |condition| {
+        let count = condition.monomials.len();
+        let [lower, upper] = readers.each_mut().map(|reader| reader.take(count));
+        let values = if condition.end == End::Lower {
+            lower
+        } else {
+            upper
+        };
+        let monomials = condition.monomials.iter().map(Vec::as_slice);
+        (
+            condition.end,
+            monomials.zip(values.iter().copied()).collect(),
+        )
+    })
+}
+
+/// Each adjoint condition with its jets and their coefficients: [`KernelId::AdjointConditions`] at the lower and the
+/// upper end.
+pub fn read_adjoint_conditions<'a>(
+    conditions: &'a [AdjointConditionInfo],
+    out: [&'a [f64]; 2],
+) -> impl Iterator<Item = (End, Vec<(Jet, f64)>)> {
+    let mut readers = out.map(|rest| Reader { rest });
+    conditions.iter().map(move |condition| {
+        let count = condition.jets.len();
+        let [lower, upper] = readers.each_mut().map(|reader| reader.take(count));
+        let values = if condition.end == End::Lower {
+            lower
+        } else {
+            upper
+        };
+        let jets = condition.jets.iter().copied();
+        (condition.end, jets.zip(values.iter().copied()).collect())
+    })
+}
+
+/// The weights of a closure of the problems at k = 0.
+#[derive(Clone, Debug)]
+pub struct ClosureWeights<T> {
+    /// Of the jets in ∫ density = 0.
+    pub density: Vec<T>,
+    /// Of the balances that the multiplier enters.
+    pub column: Vec<T>,
+}
+
+/// [`KernelId::Closures`]
+pub fn write_closures<T>(closures: Vec<ClosureWeights<T>>) -> Vec<T> {
+    let weights = closures.into_iter();
+    weights
+        .flat_map(|c| c.density.into_iter().chain(c.column))
+        .collect()
+}
+
+/// The weights of one closure: [`KernelId::Closures`].
+pub fn read_closure(closures: &[ClosureInfo], index: usize, out: &[f64]) -> ClosureWeights<f64> {
+    let mut reader = Reader { rest: out };
+    let mut weights = |info: &ClosureInfo| ClosureWeights {
+        density: reader.take(info.density.len()).to_vec(),
+        column: reader.take(info.column.len()).to_vec(),
+    };
+    closures[..index].iter().for_each(|info| {
+        weights(info);
+    });
+    weights(&closures[index])
+}
+
+/// What the amplitude measures.
+#[derive(Clone, Debug)]
+pub enum Measure<T> {
+    /// ∫ Σ w|q|² dy = value
+    Integral {
+        /// w, by weighted field.
+        weights: Vec<T>,
+        /// The value.
+        value: T,
+    },
+    /// |q(place)| = value
+    Point {
+        /// The value.
+        value: T,
+        /// y; zero without a cross-stream coordinate.
+        place: T,
+    },
+}
+
+/// [`KernelId::Amplitude`]
+pub fn write_measure<T>(measure: Measure<T>) -> Vec<T> {
+    match measure {
+        Measure::Integral { mut weights, value } => {
+            weights.push(value);
+            weights
+        }
+        Measure::Point { value, place } => vec![value, place],
+    }
+}
+
+/// [`KernelId::Amplitude`]
+pub fn read_measure(info: &AmplitudeInfo, out: &[f64]) -> Measure<f64> {
+    let mut reader = Reader { rest: out };
+    match info.field {
+        None => Measure::Integral {
+            weights: reader.take(info.weighted.len()).to_vec(),
+            value: reader.number(),
+        },
+        Some(_) => Measure::Point {
+            value: reader.number(),
+            place: reader.number(),
+        },
+    }
+}
+
+/// An output functional at one point.
+#[derive(Clone, Debug)]
+pub struct OutputTerms<T> {
+    /// y, where it is evaluated at a place.
+    pub place: T,
+    /// Of its monomials.
+    pub coefficients: Vec<T>,
+}
+
+/// [`KernelId::Outputs`]
+pub fn write_outputs<T>(outputs: Vec<OutputTerms<T>>) -> Vec<T> {
+    let terms = outputs.into_iter();
+    terms
+        .flat_map(|o| std::iter::once(o.place).chain(o.coefficients))
+        .collect()
+}
+
+/// One output: [`KernelId::Outputs`].
+pub fn read_output(outputs: &[OutputInfo], index: usize, out: &[f64]) -> OutputTerms<f64> {
+    let mut reader = Reader { rest: out };
+    let mut terms = |info: &OutputInfo| OutputTerms {
+        place: reader.number(),
+        coefficients: reader.take(info.monomials.len()).to_vec(),
+    };
+    outputs[..index].iter().for_each(|info| {
+        terms(info);
+    });
+    terms(&outputs[index])
+}
+
+/// The terms of an operator with their coefficients: [`KernelId::Linear`], [`KernelId::Adjoint`].
+pub fn read_terms<'a>(
+    terms: &'a [TermInfo],
+    out: &'a [f64],
+) -> impl Iterator<Item = (&'a TermInfo, f64)> {
+    terms.iter().zip(out.iter().copied())
+}
+
+/// Number of outputs of a real kernel.
+pub fn output_length(structure: &Structure, kernel: KernelId) -> usize {
+    let jets = |list: &Vec<BaseJet>| 1 + list.len();
+    match kernel {
+        KernelId::Interval => 2,
+        KernelId::Closed => structure.fields.len() * (structure.base_order + 1),
+        KernelId::Guess => structure.base.solved.len(),
+        KernelId::Base => structure.base.rows.iter().map(|r| jets(&r.jets)).sum(),
+        KernelId::BaseIntegrals => structure.base.integrals.iter().map(|i| jets(i) + 1).sum(),
+        KernelId::Automatic => structure.base.automatic.len(),
+        KernelId::BaseConditions(case) => {
+            let conditions = structure.cases[case].base_conditions.iter();
+            conditions.map(|c| jets(&c.jets)).sum()
+        }
+        KernelId::Divisors => structure.balances.len(),
+        KernelId::Linear => structure.linear.len(),
+        KernelId::Adjoint => structure.adjoint.len(),
+        KernelId::Nonlinear => structure.form_coefficients,
+        KernelId::Conditions(case) => {
+            let conditions = structure.cases[case].conditions.iter();
+            conditions.map(|c| c.monomials.len()).sum()
+        }
+        KernelId::AdjointConditions(case) => match &structure.cases[case].adjoint {
+            Ok(conditions) => conditions.iter().map(|c| c.jets.len()).sum(),
+            Err(_) => 0,
+        },
+        KernelId::Closures(case) => {
+            let closures = structure.cases[case].closures.iter();
+            closures.map(|c| c.density.len() + c.column.len()).sum()
+        }
+        KernelId::Amplitude => match structure.amplitude.field {
+            Some(_) => 2,
+            None => structure.amplitude.weighted.len() + 1,
+        },
+        KernelId::Outputs => {
+            let outputs = structure.outputs.iter();
+            outputs.map(|o| 1 + o.monomials.len()).sum()
+        }
+    }
+}
+
+/// Positions in the point state
+/// `[y, k, parameters…, base field 0 and its y-derivatives to base_order, base field 1, …]`.
+#[derive(Clone, Copy, Debug)]
+pub struct StateLayout {
+    parameters: usize,
+    fields: usize,
+    /// Derivatives kept of each base field.
+    base_order: usize,
+}
+
+impl StateLayout {
+    /// The layout for so many parameters and fields, with base derivatives to `base_order`.
+    pub fn new(parameters: usize, fields: usize, base_order: usize) -> Self {
+        StateLayout {
+            parameters,
+            fields,
+            base_order,
+        }
+    }
+
+    /// Number of elements.
+    pub fn length(&self) -> usize {
+        2 + self.parameters + self.fields * (self.base_order + 1)
+    }
+
+    /// Of y.
+    pub fn coordinate(&self) -> usize {
+        0
+    }
+
+    /// Of k.
+    pub fn wavenumber(&self) -> usize {
+        1
+    }
+
+    /// Of a parameter.
+    pub fn parameter(&self, index: usize) -> usize {
+        2 + index
+    }
+
+    /// Of ∂y^order of a base field.
+    pub fn base(&self, field: usize, order: usize) -> usize {
+        2 + self.parameters + field * (self.base_order + 1) + order
+    }
+}
+
+/// The state at one point, made element by element.
+#[derive(Clone, Debug)]
+pub struct PointState {
+    layout: StateLayout,
+    values: Vec<f64>,
+}
+
+impl PointState {
+    /// At a place, for a wavenumber, with parameters; the base fields are zero.
+    pub fn new(layout: StateLayout, y: f64, k: f64, parameters: &[f64]) -> Self {
+        let mut values = vec![0.0; layout.length()];
+        values[layout.coordinate()] = y;
+        values[layout.wavenumber()] = k;
+        for (index, value) in parameters.iter().enumerate() {
+            values[layout.parameter(index)] = *value;
+        }
+        PointState { layout, values }
+    }
+
+    /// Fills in the fields in closed form: the outputs of [`KernelId::Closed`].
+    pub fn set_closed(&mut self, closed: &[f64]) {
+        let first = self.layout.base(0, 0);
+        self.values[first..].copy_from_slice(closed);
+    }
+
+    /// Sets ∂y^order of a base field.
+    pub fn set_base(&mut self, field: usize, order: usize, value: f64) {
+        let position = self.layout.base(field, order);
+        self.values[position] = value;
+    }
+
+    /// What kernels read.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// What kernels read, as it is kept.
+    pub fn into_values(self) -> Vec<f64> {
+        self.values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is written is what is read.
+    #[test]
+    fn written_and_read() {
+        let jet = |field, order| BaseJet { field, order };
+        let rows = [vec![jet(0, 0), jet(1, 2)], vec![], vec![jet(1, 0)]];
+        let value = |start: f64, count: usize| Linearised {
+            value: start,
+            slopes: (1..=count).map(|i| start + i as f64).collect(),
+        };
+        let out = write_linearised(vec![value(10.0, 2), value(20.0, 0), value(30.0, 1)]);
+        let rows = rows.map(|jets| BaseRowInfo { balance: 0, jets });
+        let read = read_base_row(&rows, 2, &out);
+        assert_eq!((read.value, read.slopes), (30.0, vec![31.0]));
+
+        let integrals = [vec![jet(0, 0)], vec![jet(0, 0), jet(0, 1)]];
+        let out = write_integrals(vec![(value(1.0, 1), 7.0), (value(4.0, 2), 8.0)]);
+        let (integrand, prescribed) = read_integral(&integrals, 1, &out);
+        assert_eq!((integrand.value, prescribed), (4.0, 8.0));
+
+        let measure = write_measure(Measure::Point {
+            value: 2.0,
+            place: 0.5,
+        });
+        let info = AmplitudeInfo {
+            weighted: Vec::new(),
+            field: Some(0),
+            description: String::new(),
+        };
+        assert!(matches!(
+            read_measure(&info, &measure),
+            Measure::Point { value, place } if (value, place) == (2.0, 0.5)
+        ));
+    }
+
+    #[test]
+    fn the_state_holds_every_element_once() {
+        let layout = StateLayout::new(3, 2, 2);
+        let mut positions = vec![layout.coordinate(), layout.wavenumber()];
+        positions.extend((0..3).map(|i| layout.parameter(i)));
+        positions.extend((0..2).flat_map(|f| (0..=2).map(move |o| layout.base(f, o))));
+        assert_eq!(positions, (0..layout.length()).collect::<Vec<_>>());
+    }
+}
