@@ -306,14 +306,31 @@ fn planted_sign_is_found() {
 /// wrong sign is noticed.
 #[test]
 fn every_planted_sign_is_found() {
-    type Settings = &'static [(&'static str, &'static str)];
-    let cases: [(&str, f64, usize, Settings); 4] = [
+    signs_are_found(&[
         ("swift_hohenberg_strip", 1.05, 20, &[("r", "1.2")]),
         ("rayleigh_benard", 3.0, 24, &[("Ra", "2000")]),
         ("robin_strip", 1.0, 20, &[]),
         ("granular_couette", 3.0, 10, &[]),
-    ];
-    for (name, k, m, settings) in cases {
+    ]);
+}
+
+/// The same of the bed, which has hundreds of them.
+#[test]
+#[ignore = "slow profile"]
+fn every_planted_sign_of_the_bed_is_found() {
+    signs_are_found(&[("vibrated_bed", 0.16, 24, &[])]);
+}
+
+/// Model, wavenumber, M, settings.
+type Planting = (
+    &'static str,
+    f64,
+    usize,
+    &'static [(&'static str, &'static str)],
+);
+
+fn signs_are_found(cases: &[Planting]) {
+    for &(name, k, m, settings) in cases {
         let plant = |kernel: KernelId, coefficient: usize| Planted {
             model: built(name),
             kernel,
@@ -321,28 +338,27 @@ fn every_planted_sign_is_found() {
         };
         let model = built(name);
         let structure = model.structure();
-        for coefficient in 0..structure.form_coefficients {
-            // A coefficient that vanishes at this base state has no sign.
+        // A coefficient that vanishes at this base state has no sign.
+        let vanishes = |kernel: KernelId, coefficient: usize| {
             let values = with_problem(model.as_ref(), m, settings, |problem| {
                 let at = |xi: f64| problem.base.point(model.as_ref(), xi, k);
-                [-0.7, 0.1, 0.6]
-                    .map(|xi| evaluate(model.as_ref(), KernelId::Nonlinear, &at(xi))[coefficient])
+                [-1.0, -0.7, 0.1, 0.6, 1.0]
+                    .map(|xi| evaluate(model.as_ref(), kernel, &at(xi))[coefficient])
             });
-            if values.iter().all(|v| *v == 0.0) {
+            values.iter().all(|v| *v == 0.0)
+        };
+        for coefficient in 0..structure.form_coefficients {
+            if vanishes(KernelId::Nonlinear, coefficient) {
                 continue;
             }
             let planted = plant(KernelId::Nonlinear, coefficient);
-            let (order, worst) = with_problem(&planted, m, settings, |problem| {
+            let worst = with_problem(&planted, m, settings, |problem| {
                 let routes = [2, 3].map(|degree| second_route(problem, degree).0);
-                (order(problem, k), routes[0].max(routes[1]))
+                routes[0].max(routes[1])
             });
             assert!(
                 worst > 1e-6,
                 "{name}: {coefficient} passed the second route"
-            );
-            assert!(
-                order.is_nan() || (order - 4.0).abs() > 0.08 || worst > 1e-6,
-                "{name}: {coefficient} passed the residual order"
             );
         }
         let broken = |planted: &Planted| {
@@ -354,7 +370,7 @@ fn every_planted_sign_is_found() {
         };
         for (coefficient, term) in structure.adjoint.iter().enumerate() {
             // M0† stands apart from L†, and a row of one term may be turned as a whole.
-            if term.jet.t == 0 {
+            if term.jet.t == 0 && !vanishes(KernelId::Adjoint, coefficient) {
                 let planted = plant(KernelId::Adjoint, coefficient);
                 assert!(broken(&planted), "{name}: term {coefficient} of L† passed");
             }
@@ -365,8 +381,9 @@ fn every_planted_sign_is_found() {
         let mut first = 0;
         for condition in conditions {
             for coefficient in first..first + condition.jets.len() {
-                if condition.jets.len() > 1 {
-                    let planted = plant(KernelId::AdjointConditions(0), coefficient);
+                let kernel = KernelId::AdjointConditions(0);
+                if condition.jets.len() > 1 && !vanishes(kernel, coefficient) {
+                    let planted = plant(kernel, coefficient);
                     assert!(broken(&planted), "{name}: condition {coefficient} passed");
                 }
             }

@@ -11,10 +11,13 @@ use faer::{Conj, Mat, MatMut, MatRef, Spec, get_global_parallelism};
 pub trait Scalar: ComplexField + Copy + Send + Sync + std::fmt::Debug {
     /// Drops the imaginary part where the type is real.
     fn from_complex(value: C64) -> Self;
+    /// As a complex number.
     fn complex(self) -> C64;
     /// |x|
     fn size(self) -> f64;
+    /// Multiplied by a real number.
     fn times(self, factor: f64) -> Self;
+    /// The complex conjugate.
     fn conjugate(self) -> Self;
     /// All eigenvalues and right eigenvectors.
     fn eigen(matrix: MatRef<'_, Self>) -> Option<(Vec<C64>, Mat<C64>)>;
@@ -123,6 +126,7 @@ pub struct Factorised<T: Scalar> {
 }
 
 impl<T: Scalar> Factorised<T> {
+    /// Factorises a square matrix, which is overwritten.
     pub fn new(mut matrix: Mat<T>) -> Self {
         let n = matrix.nrows();
         let scale = vectorised(

@@ -14,10 +14,12 @@ pub enum Error {
 }
 
 impl Error {
+    /// A bad option, parameter or file.
     pub fn input(message: impl Into<String>) -> Self {
         Error::Input(message.into())
     }
 
+    /// A computation without an answer.
     pub fn computation(message: impl Into<String>) -> Self {
         Error::Computation(message.into())
     }
@@ -31,4 +33,5 @@ impl Error {
     }
 }
 
+/// What fails with an [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;

@@ -23,6 +23,7 @@
 
 // X[k;m] is the mode of harmonic k and order m, not a link.
 #![allow(rustdoc::broken_intra_doc_links)]
+#![warn(missing_docs)]
 
 pub mod base;
 pub mod collocation;

@@ -7,7 +7,9 @@ use crate::model::nearest;
 /// Values of all parameters of a model; those set to `auto` are still to be determined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameters {
+    /// By parameter; of a switch the position of its choice.
     pub values: Vec<f64>,
+    /// Whether the base state determines it.
     pub automatic: Vec<bool>,
 }
 

@@ -3,10 +3,15 @@
 /// A derivative of a field: ∂x^x |∂x|^absx ∂y^y ∂t^t of field number `field`.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Jet {
+    /// The field (in L†: the balance) that is derived.
     pub field: u8,
+    /// Powers of ∂t.
     pub t: u8,
+    /// Powers of ∂x.
     pub x: u8,
+    /// Powers of |∂x|.
     pub absx: u8,
+    /// Powers of ∂y.
     pub y: u8,
 }
 
@@ -65,27 +70,41 @@ pub fn jet(field: u8, t: u8, x: u8, absx: u8, y: u8) -> Jet {
 /// Differential operators of the spec language.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Operator {
+    /// ∂/∂x along the periodic coordinate.
     Dx,
+    /// ∂/∂y across.
     Dy,
+    /// ∂/∂t.
     Dt,
+    /// |∂x|: multiplies e^{ikx} by |k|.
     AbsDx,
 }
 
 /// Elementary functions (√ is a power).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Function {
+    /// e^a
     Exp,
+    /// Natural logarithm.
     Log,
+    /// Sine.
     Sin,
+    /// Cosine.
     Cos,
+    /// Tangent.
     Tan,
+    /// Hyperbolic sine.
     Sinh,
+    /// Hyperbolic cosine.
     Cosh,
+    /// Hyperbolic tangent.
     Tanh,
+    /// Inverse tangent.
     Atan,
 }
 
 impl Function {
+    /// All of them, in the order of declaration.
     pub const ALL: [Function; 9] = [
         Function::Exp,
         Function::Log,
@@ -117,10 +136,13 @@ impl Function {
 /// An end of the cross-stream interval.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
 pub enum End {
+    /// Where y is least.
     Lower,
+    /// Where y is largest.
     Upper,
 }
 
 impl End {
+    /// Both, the lower first.
     pub const BOTH: [End; 2] = [End::Lower, End::Upper];
 }

@@ -13,19 +13,27 @@ pub type Register = usize;
 /// One operation; operands are registers defined before it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operation {
+    /// A number.
     Constant(f64),
     /// Element `1` of input array `0`.
     Input(usize, usize),
+    /// a + b
     Add(Register, Register),
+    /// a − b
     Subtract(Register, Register),
+    /// a b
     Multiply(Register, Register),
+    /// a / b
     Divide(Register, Register),
+    /// −a
     Negate(Register),
+    /// √a
     Sqrt(Register),
     /// Integer power.
     PowerI(Register, i32),
     /// Power with any real exponent.
     PowerF(Register, f64),
+    /// f(a)
     Call(Function, Register),
     /// One of the registers, by the value of a (switch) register.
     Select(Register, Cow<'static, [Register]>),
@@ -34,6 +42,7 @@ pub enum Operation {
 /// An input array of a kernel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
+    /// As it is called in emitted code.
     pub name: &'static str,
     /// Whether elements are real whatever number type the kernel runs on.
     pub real: bool,
@@ -42,8 +51,11 @@ pub struct Array {
 /// A straight-line program; a constant of emitted code, or made at run time.
 #[derive(Clone, Debug)]
 pub struct Kernel {
+    /// What `Operation::Input` reads from.
     pub inputs: Cow<'static, [Array]>,
+    /// In order of execution: register i is the result of operation i.
     pub operations: Cow<'static, [Operation]>,
+    /// The registers that are the results.
     pub outputs: Cow<'static, [Register]>,
     /// Arithmetic operations of the expressions as written, nothing shared.
     pub unshared: usize,
@@ -135,9 +147,12 @@ pub fn apply<T: Number>(function: Function, x: T) -> T {
 /// The kernels of a model with their structure.
 #[derive(Clone, Debug)]
 pub struct ModelKernels {
+    /// What their inputs and outputs mean.
     pub structure: Structure,
+    /// The real kernels.
     pub kernels: Vec<(KernelId, Kernel)>,
     /// `forms[d − 2][row]`
     pub forms: Vec<Vec<Option<Kernel>>>,
+    /// The unexpanded residuals.
     pub residuals: Vec<(ResidualId, Kernel)>,
 }

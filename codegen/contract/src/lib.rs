@@ -3,6 +3,8 @@
 //!
 //! Nothing here knows where kernels come from, or what is done with them.
 
+#![warn(missing_docs)]
+
 mod jet;
 mod kernel;
 pub mod layout;

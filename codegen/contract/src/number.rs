@@ -21,18 +21,31 @@ pub trait Number:
 {
     /// The number itself, without imaginary part and higher terms.
     fn real_part(self) -> f64;
+    /// 1/a
     fn recip(self) -> Self;
+    /// √a, the principal branch.
     fn sqrt(self) -> Self;
+    /// a^exponent by repeated squaring.
     fn powi(self, exponent: i32) -> Self;
+    /// a^exponent for a real exponent.
     fn powf(self, exponent: f64) -> Self;
+    /// e^a
     fn exp(self) -> Self;
+    /// Natural logarithm.
     fn log(self) -> Self;
+    /// Sine.
     fn sin(self) -> Self;
+    /// Cosine.
     fn cos(self) -> Self;
+    /// Tangent.
     fn tan(self) -> Self;
+    /// Hyperbolic sine.
     fn sinh(self) -> Self;
+    /// Hyperbolic cosine.
     fn cosh(self) -> Self;
+    /// Hyperbolic tangent.
     fn tanh(self) -> Self;
+    /// Inverse tangent.
     fn atan(self) -> Self;
 }
 

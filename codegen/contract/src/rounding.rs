@@ -7,6 +7,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// precision: running error analysis to first order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WithRounding {
+    /// The number itself.
     pub value: f64,
     /// |error|/ε
     pub size: f64,

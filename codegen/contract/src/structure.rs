@@ -9,24 +9,31 @@ use crate::layout::StateLayout;
 /// Everything about a model that is not a kernel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Structure {
+    /// As the spec declares it.
     pub name: String,
+    /// In words.
     pub title: String,
     /// Highest degree of the nonlinear forms.
     pub order: usize,
+    /// The name of the periodic coordinate.
     pub periodic: String,
     /// The cross-stream coordinate, if there is one.
     pub coordinate: Option<String>,
     /// Profiles first, then unknown numbers.
     pub fields: Vec<FieldInfo>,
+    /// In the order of their declaration.
     pub parameters: Vec<ParameterInfo>,
+    /// Names of the balances, in the order of their declaration.
     pub balances: Vec<String>,
     /// Highest y-derivative of base fields that kernels ask for.
     pub base_order: usize,
+    /// What is needed to solve for the base state.
     pub base: BaseInfo,
     /// Points of the balances and values of the profiles in L.
     pub offsets: OffsetsInfo,
     /// The same for L†: rows are fields, columns balances.
     pub adjoint_offsets: OffsetsInfo,
+    /// Which fields and balances are odd in the mirror x → −x, where the model has that symmetry.
     pub parity: Option<ParityInfo>,
     /// L (no ∂t) and M0 (one ∂t); coefficients from [`KernelId::Linear`] in this order.
     pub linear: Vec<TermInfo>,
@@ -42,9 +49,13 @@ pub struct Structure {
     pub residual_jets: Vec<Jet>,
     /// Parameters (switches) that select the case.
     pub switches: Vec<usize>,
+    /// One for each combination of the structural switches.
     pub cases: Vec<CaseInfo>,
+    /// What the amplitude measures.
     pub amplitude: AmplitudeInfo,
+    /// Output functionals.
     pub outputs: Vec<OutputInfo>,
+    /// What the spec calls typical.
     pub typical: Option<TypicalInfo>,
     /// Operations of all kernels as written, and after common subexpressions are shared.
     pub operations: Vec<usize>,
@@ -53,28 +64,39 @@ pub struct Structure {
 /// A wavenumber that shows what the model is about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TypicalInfo {
+    /// Wavenumber.
     pub k: f64,
     /// Real and imaginary part of the eigenvalue that its mode is near to; empty for the leading one.
     pub near: Vec<f64>,
 }
 
+/// A field of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldInfo {
+    /// As the spec declares it.
     pub name: String,
+    /// In words.
     pub doc: String,
     /// Range that a base state must keep.
     pub lower: f64,
+    /// The largest value that a base state may take.
     pub upper: f64,
     /// A number rather than a profile.
     pub uniform: bool,
 }
 
+/// A parameter of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterInfo {
+    /// As the spec declares it.
     pub name: String,
+    /// In words.
     pub doc: String,
+    /// Its value where none is set.
     pub default: f64,
+    /// The least value it accepts.
     pub lower: f64,
+    /// The largest value it accepts.
     pub upper: f64,
     /// Names of the values of a switch.
     pub choices: Vec<String>,
@@ -82,12 +104,14 @@ pub struct ParameterInfo {
     pub automatic: bool,
 }
 
+/// What is needed to solve for the base state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseInfo {
     /// Fields that are solved for; profiles first.
     pub solved: Vec<usize>,
     /// Whether each field has a closed form.
     pub closed: Vec<bool>,
+    /// Balances that it has to satisfy.
     pub rows: Vec<BaseRowInfo>,
     /// Points of `rows` and values of the profiles among `solved`.
     pub offsets: OffsetsInfo,
@@ -101,14 +125,18 @@ pub struct BaseInfo {
 /// conditions as the values are more than the points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffsetsInfo {
+    /// By balance.
     pub rows: Vec<usize>,
+    /// By field.
     pub columns: Vec<usize>,
 }
 
 /// ∂y^order of a base field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseJet {
+    /// Its field.
     pub field: usize,
+    /// Powers of ∂y.
     pub order: usize,
 }
 
@@ -116,28 +144,40 @@ pub struct BaseJet {
 /// each of `jets`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseRowInfo {
+    /// Which balance it is.
     pub balance: usize,
+    /// The base jets that it depends on.
     pub jets: Vec<BaseJet>,
 }
 
+/// A parameter that a condition of the base state can determine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AutomaticInfo {
+    /// Which parameter.
     pub parameter: usize,
+    /// Where the condition holds.
     pub end: End,
 }
 
+/// Which fields and balances are odd in the mirror x → −x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParityInfo {
+    /// By field.
     pub fields: Vec<bool>,
+    /// By balance.
     pub rows: Vec<bool>,
 }
 
+/// A term of an operator.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TermInfo {
+    /// Of L the balance, of L† the field that it stands in.
     pub row: usize,
+    /// Of L a jet of a field, of L† of a balance.
     pub jet: Jet,
 }
 
+/// One combination of the structural switches: its conditions and closures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseInfo {
     /// The choice of each structural switch.
@@ -154,35 +194,47 @@ pub struct CaseInfo {
     pub closures: Vec<ClosureInfo>,
 }
 
+/// A condition of the base state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseConditionInfo {
+    /// Where it holds.
     pub end: End,
+    /// The base jets that it depends on.
     pub jets: Vec<BaseJet>,
 }
 
+/// A boundary condition of the perturbation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionInfo {
+    /// Where it holds.
     pub end: End,
     /// Monomials of degree 1, 2, 3, …
     pub monomials: Vec<Vec<Jet>>,
 }
 
+/// A boundary condition of the adjoint problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AdjointConditionInfo {
+    /// Where it holds.
     pub end: End,
+    /// Its jets: the `field` of each is a balance.
     pub jets: Vec<Jet>,
 }
 
+/// What makes the problem at k = 0 solvable.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosureInfo {
+    /// Which kind.
     pub kind: ClosureKind,
     /// The gauge or the unknown.
     pub field: Option<usize>,
+    /// The jets whose integral is closed.
     pub density: Vec<Jet>,
     /// Balances that the multiplier enters.
     pub column: Vec<usize>,
 }
 
+/// What the amplitude measures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmplitudeInfo {
     /// Fields with a weight in ∫ Σ w|q|² dy; empty for a point value.
@@ -193,9 +245,12 @@ pub struct AmplitudeInfo {
     pub description: String,
 }
 
+/// An output functional.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputInfo {
+    /// As the spec declares it.
     pub name: String,
+    /// In words.
     pub doc: String,
     /// Evaluated at a place, rather than integrated.
     pub at_point: bool,
@@ -206,12 +261,15 @@ pub struct OutputInfo {
 /// The kinds of closure at k = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClosureKind {
+    /// An integral that does not change in time.
     Conserved,
     /// Said to be conserved: recognised in the collocated problem, or dropped.
     Claimed,
+    /// The constant of a field that is determined up to one.
     Gauge,
     /// A gauge with a time derivative: its multiplier is the rate at which the constant drifts.
     Drift,
+    /// A number that its own condition determines.
     Unknown,
 }
 
@@ -235,12 +293,17 @@ pub enum KernelId {
     BaseConditions(usize),
     /// What each balance is divided by.
     Divisors,
+    /// Coefficients of L and M0.
     Linear,
+    /// Coefficients of L† and M0†.
     Adjoint,
+    /// Coefficients of N2 and N3.
     Nonlinear,
     /// Coefficients of the boundary conditions of one case.
     Conditions(usize),
+    /// The same of the adjoint problem.
     AdjointConditions(usize),
+    /// Densities and columns of what closes k = 0, in one case.
     Closures(usize),
     /// Weights, then the prescribed value, then the place.
     Amplitude,

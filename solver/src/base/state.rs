@@ -63,9 +63,13 @@ fn residual(model: &dyn Model, id: ResidualId, point: &[f64], sizes: &[f64]) -> 
 /// X⁰(y), evaluated to any derivative that kernels ask for.
 #[derive(Clone, Debug)]
 pub struct BaseState {
+    /// Values of the parameters, automatic ones determined.
     pub parameters: Parameters,
+    /// Position of the case among those of the structure.
     pub case: usize,
+    /// y of the lower end.
     pub lower: f64,
+    /// y of the upper end.
     pub upper: f64,
     /// Degree of the series (0 where the base is in closed form).
     pub degree: usize,

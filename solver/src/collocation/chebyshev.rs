@@ -45,11 +45,14 @@ impl GridKind {
 /// Points in increasing order.
 #[derive(Clone, Debug)]
 pub struct Grid {
+    /// Which family.
     pub kind: GridKind,
+    /// ξ in [−1, 1].
     pub nodes: Vec<f64>,
 }
 
 impl Grid {
+    /// The points of a family.
     pub fn new(kind: GridKind) -> Self {
         let nodes = match kind {
             GridKind::Gauss(n) => {
@@ -67,10 +70,12 @@ impl Grid {
         Grid { kind, nodes }
     }
 
+    /// Number of points.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
+    /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }

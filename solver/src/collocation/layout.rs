@@ -14,15 +14,20 @@ use std::sync::{Arc, Mutex};
 /// A run of unknowns or equations on one grid.
 #[derive(Clone, Debug)]
 pub struct Block {
+    /// Its points.
     pub grid: GridKind,
+    /// Position of the first.
     pub offset: usize,
+    /// How many.
     pub len: usize,
 }
 
 /// Unknowns by column block, equations by row block, then the boundary conditions.
 #[derive(Clone, Debug)]
 pub struct Layout {
+    /// By field: profiles alone.
     pub columns: Vec<Block>,
+    /// By balance.
     pub rows: Vec<Block>,
     /// Where the rows of boundary conditions start.
     pub walls: usize,
@@ -103,6 +108,7 @@ pub struct Discretisation {
 }
 
 impl Discretisation {
+    /// With no matrix made yet.
     pub fn new() -> Self {
         Self::default()
     }

@@ -9,8 +9,11 @@
 pub enum Stretch {
     /// η = ξ
     None,
+    /// ξ = centre + width sinh(…): a thin layer widened.
     Layer {
+        /// ξ of the layer.
         centre: f64,
+        /// Its width in ξ.
         width: f64,
     },
 }

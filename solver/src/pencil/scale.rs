@@ -9,6 +9,7 @@ const SLOW: usize = 10;
 /// Finite eigenvalues by decreasing real part.
 #[derive(Clone, Debug, Default)]
 pub struct Spectrum {
+    /// In units of 1/time of the model.
     pub values: Vec<C64>,
 }
 
@@ -18,6 +19,7 @@ pub(super) fn decreasing(a: &C64, b: &C64) -> Ordering {
 }
 
 impl Spectrum {
+    /// Sorts eigenvalues; what is not finite is left out.
     pub fn new(mut values: Vec<C64>) -> Self {
         values.retain(|c| c.re.is_finite() && c.im.is_finite());
         values.sort_by(decreasing);

@@ -13,8 +13,11 @@ use std::collections::BTreeMap;
 /// What is assembled: `mass`·M0 + `operator`·L, and `walls` times the boundary conditions.
 #[derive(Clone, Copy)]
 pub struct Combination {
+    /// The factor of M0.
     pub mass: C64,
+    /// The factor of L.
     pub operator: C64,
+    /// The factor of the boundary conditions.
     pub walls: f64,
 }
 

@@ -13,6 +13,7 @@ use crate::model::{ClosureInfo, ClosureKind, Jet, KernelId, Model, evaluate};
 /// One border: a row that closes the problem, and the column of its multiplier.
 #[derive(Clone, Debug)]
 pub struct Border {
+    /// Which kind of closure.
     pub kind: ClosureKind,
     /// Its position among the closures of the case.
     pub closure: usize,

@@ -7,8 +7,11 @@ use crate::model::{End, Jet, KernelId, Model, evaluate};
 /// One boundary condition: Σ coefficient · Π jets, jets of one field or of several.
 #[derive(Clone, Debug)]
 pub struct WallRow {
+    /// Where it holds.
     pub end: End,
+    /// Its linear part: jet and coefficient.
     pub linear: Vec<(Jet, f64)>,
+    /// Products of jets with their coefficients.
     pub nonlinear: Vec<(Vec<Jet>, f64)>,
 }
 

@@ -27,9 +27,11 @@ use std::sync::OnceLock;
 
 /// Direct or adjoint linear problem: terms with coefficients at their rows' points.
 pub struct LinearProblem {
+    /// Where unknowns and equations stand.
     pub layout: Layout,
     /// Row, jet (field = column) and coefficient at each point of the row.
     terms: Vec<(usize, Jet, Vec<f64>)>,
+    /// The boundary conditions.
     pub walls: Vec<WallRow>,
     /// Quarter turns of columns and rows that make matrices real; zeros without the symmetry.
     column_turns: Vec<usize>,
@@ -38,11 +40,15 @@ pub struct LinearProblem {
 
 /// Everything about one base state that does not depend on the wavenumber.
 pub struct Problem<'m> {
+    /// The kernels.
     pub model: &'m dyn Model,
+    /// What the perturbation is a perturbation of.
     pub base: &'m BaseState,
     /// M; 0 without a cross-stream coordinate.
     pub resolution: usize,
+    /// Differentiation matrices.
     pub discretisation: &'m Discretisation,
+    /// L, M0 and the boundary conditions.
     pub direct: LinearProblem,
     /// The separately discretised adjoint, made when first asked for.
     adjoint: OnceLock<Result<LinearProblem>>,
@@ -183,6 +189,7 @@ impl<'m> Problem<'m> {
         ))
     }
 
+    /// What the kernels are about.
     pub fn structure(&self) -> &Structure {
         self.model.structure()
     }

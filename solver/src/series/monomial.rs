@@ -11,7 +11,9 @@ const SUPERSCRIPTS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', 
 /// z^p z̄^s: the exponents of each amplitude, and of its conjugate.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Monomial {
+    /// p, by amplitude.
     pub z: Vec<u8>,
+    /// s, by amplitude.
     pub conj: Vec<u8>,
 }
 

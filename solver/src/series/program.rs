@@ -10,7 +10,9 @@ use std::collections::HashMap;
 /// Whether every coefficient is real, or i times real: then half of the work, and less, does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arithmetic {
+    /// One number a coefficient and point.
     Real,
+    /// Two.
     Complex,
 }
 
@@ -81,6 +83,7 @@ impl Program {
         program
     }
 
+    /// Which of the two this program runs in.
     pub fn arithmetic(&self) -> Arithmetic {
         self.arithmetic
     }

@@ -23,8 +23,11 @@ const SIMPLE: f64 = 1e-7;
 /// An eigenvalue with right and left eigenvectors, in the solver's basis.
 #[derive(Clone, Debug)]
 pub struct EigenPair {
+    /// Its wavenumber.
     pub k: f64,
+    /// The eigenvalue, e^{ct}.
     pub c: C64,
+    /// L x = c M0 x, boundary rows included.
     pub right: Vec<C64>,
     /// yᴴ L = c yᴴ M0, boundary rows included.
     pub left: Vec<C64>,

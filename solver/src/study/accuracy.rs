@@ -23,7 +23,9 @@ const SAFETY: f64 = 5.0;
 /// Absolute errors of c0 and c2.
 #[derive(Clone, Copy, Debug)]
 pub struct Accuracy {
+    /// Of c0.
     pub c0: f64,
+    /// Of c2.
     pub c2: f64,
 }
 

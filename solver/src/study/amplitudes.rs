@@ -40,22 +40,29 @@ pub fn check_order(order: usize) -> Result<()> {
 /// A mode that is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct ModeChoice {
+    /// Its wavenumber; negative for a wave to the other side.
     pub k: f64,
+    /// The eigenvalue that it is nearest to; the leading one otherwise.
     pub near: Option<C64>,
 }
 
 /// A term with its absolute error.
 #[derive(Clone, Debug)]
 pub struct Coefficient {
+    /// z^p z̄^s
     pub monomial: Monomial,
+    /// Its coefficient.
     pub g: C64,
+    /// Absolute error of the coefficient.
     pub error: f64,
 }
 
 /// An equilibrium with a measure of trust.
 #[derive(Clone, Debug)]
 pub struct State {
+    /// The state.
     pub equilibrium: Equilibrium,
+    /// Speed of a pattern that travels as a whole.
     pub drift: Option<f64>,
     /// The terms of the next order at it, relative to the largest there.
     pub next_order: f64,
@@ -64,18 +71,26 @@ pub struct State {
 /// The amplitude equations of some modes; owns its data.
 #[derive(Clone, Debug)]
 pub struct AmplitudesReport {
+    /// Name of the model.
     pub model: String,
+    /// Its title.
     pub title: String,
+    /// By name; switches by the name of their choice.
     pub parameters: Value,
     /// M, where there is a cross-stream coordinate.
     pub resolution: usize,
     has_coordinate: bool,
+    /// The highest degree of the equations.
     pub order: usize,
     /// Wavenumber and eigenvalue of each mode.
     pub modes: Vec<(f64, C64)>,
+    /// What the amplitudes of all modes measure.
     pub normalization: String,
+    /// One a mode, linear terms first.
     pub equations: Vec<Vec<Coefficient>>,
+    /// Up to phase.
     pub equilibria: Vec<State>,
+    /// One a problem that was solved.
     pub distances: Vec<Distance>,
     /// Rates that distances are small or large against.
     pub slow_rate: f64,

@@ -20,7 +20,9 @@ const UNRESOLVED: f64 = 1e-2;
 /// What changes sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
+    /// Re c0
     Growth,
+    /// Re c2
     C2,
     /// 1/c2: where 2 c0(k) meets an eigenvalue at 2k.
     Resonance,
@@ -29,22 +31,30 @@ pub enum Quantity {
 /// A question of the command `critical`.
 #[derive(Clone, Copy, Debug)]
 pub struct Question {
+    /// What varies.
     pub axis: Axis,
+    /// Where it begins.
     pub from: f64,
+    /// Where it ends.
     pub to: f64,
+    /// What has to change sign.
     pub quantity: Quantity,
     /// The fixed wavenumber, unless it is the axis or minimised over.
     pub k: f64,
+    /// The mode that is followed; the most unstable one otherwise.
     pub near: Option<C64>,
 }
 
 /// Its answer.
 #[derive(Clone, Debug)]
 pub struct Critical {
+    /// Where along the axis.
     pub value: f64,
     /// Absolute error of the value: where another collocation puts it.
     pub error: f64,
+    /// The wavenumber.
     pub k: f64,
+    /// The eigenvalue there.
     pub c0: C64,
 }
 

@@ -30,7 +30,9 @@ use std::sync::Arc;
 /// A model with parameters and resolution: what the command line sets up.
 #[derive(Clone)]
 pub struct Setup<'m> {
+    /// The kernels.
     pub model: &'m dyn Model,
+    /// Values, and which of them the base state determines.
     pub parameters: Parameters,
     /// M
     pub resolution: usize,
@@ -41,7 +43,9 @@ pub struct Setup<'m> {
 /// A coordinate of a study: the wavenumber or a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
+    /// k
     Wavenumber,
+    /// A parameter by position.
     Parameter(usize),
 }
 
@@ -168,7 +172,9 @@ impl<'m> Setup<'m> {
 /// A mode carried from one point of a study to the next.
 #[derive(Clone)]
 pub struct Carried {
+    /// The base state there.
     pub base: BaseState,
+    /// The mode there.
     pub pair: EigenPair,
 }
 

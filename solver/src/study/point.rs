@@ -27,26 +27,36 @@ pub const SINGULAR: f64 = 1e-8;
 /// c0, c2 and what belongs to them at one wavenumber; owns its data.
 #[derive(Clone, Debug)]
 pub struct PointReport {
+    /// Name of the model.
     pub model: String,
+    /// Its title.
     pub title: String,
     /// By name; switches by the name of their choice.
     pub parameters: Value,
+    /// The wavenumber.
     pub k: f64,
     /// M, where there is a cross-stream coordinate.
     pub resolution: usize,
     has_coordinate: bool,
+    /// The eigenvalue: growth rate and frequency.
     pub c0: C64,
+    /// The first Landau coefficient.
     pub c2: C64,
     /// A_e
     pub amplitude: Option<f64>,
+    /// Side and kind.
     pub bifurcation: Bifurcation,
+    /// What the amplitude measures.
     pub normalization: String,
+    /// Absolute errors of c0 and c2.
     pub error: Accuracy,
+    /// Distances from singularity.
     pub resonance: Resonance,
     /// Name, value at the base state, A² correction.
     pub outputs: Vec<(String, [f64; 2])>,
     /// Name and dc0/d(parameter).
     pub dc0: Vec<(String, C64)>,
+    /// dc0/dk and d²c0/dk².
     pub envelope: Envelope,
     /// Whether a conserved mean couples to the envelope, whose equation then is not closed.
     pub conserved_mean: bool,

@@ -12,6 +12,7 @@ use crate::weakly::{LandauPoint, Mode, quadrature_grid, quadrature_weights};
 
 /// The adjoint eigenfunction X† and its eigenvalue.
 pub struct AdjointMode {
+    /// Its eigenvalue: the conjugate of c0 but for truncation.
     pub c: C64,
     /// Physical values at the adjoint problem's unknowns.
     pub values: Vec<C64>,

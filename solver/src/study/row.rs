@@ -21,16 +21,23 @@ pub(super) const COLUMNS: [&str; 11] = [
 /// One row of the table; what has no answer is missing, and `status` says why.
 #[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Row {
+    /// Place on each axis.
     pub coordinates: Vec<f64>,
+    /// Real and imaginary part.
     pub c0: Option<[f64; 2]>,
     /// Absolute error of c0, from a coarser collocation.
     pub c0_error: Option<f64>,
+    /// Real and imaginary part.
     pub c2: Option<[f64; 2]>,
+    /// Absolute error of c2.
     pub c2_error: Option<f64>,
+    /// A_e
     pub amplitude: Option<f64>,
+    /// Side and kind, in words.
     pub bifurcation: String,
     /// Distances of the problems for X[0;2] and X[2;2] from singularity.
     pub mean_flow: Option<f64>,
+    /// Of the problem at 2k.
     pub second_harmonic: Option<f64>,
     /// `ok`, or why there is no number, or what is near.
     pub status: String,
@@ -40,7 +47,9 @@ pub struct Row {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Column {
+    /// Growth rate.
     A0,
+    /// Re c2
     A2,
     /// A_e of an unstable mode.
     Amplitude,

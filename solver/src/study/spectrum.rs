@@ -16,13 +16,18 @@ const SHOWN: usize = 20;
 /// Both spectra at one wavenumber; owns its data.
 #[derive(Clone, Debug)]
 pub struct SpectrumReport {
+    /// Name of the model.
     pub model: String,
+    /// Its title.
     pub title: String,
+    /// By name; switches by the name of their choice.
     pub parameters: Value,
+    /// The wavenumber.
     pub k: f64,
     /// M, where there is a cross-stream coordinate.
     pub resolution: usize,
     has_coordinate: bool,
+    /// Eigenvalues of L.
     pub direct: Spectrum,
     /// Eigenvalues of L† in the order of their conjugates, or why there are none.
     pub adjoint: std::result::Result<Spectrum, String>,

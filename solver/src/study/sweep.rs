@@ -25,15 +25,21 @@ const RESONANT: f64 = 1e-3;
 /// Evenly spaced values along one axis.
 #[derive(Clone, Debug)]
 pub struct Range {
+    /// As it was asked for.
     pub name: String,
+    /// What varies.
     pub axis: Axis,
+    /// In order.
     pub values: Vec<f64>,
 }
 
 /// A sweep over the product of its ranges, the first varying fastest.
 pub struct Sweep<'s, 'm> {
+    /// What is swept.
     pub setup: &'s Setup<'m>,
+    /// The first varies fastest.
     pub ranges: Vec<Range>,
+    /// The mode at the start; the leading one otherwise.
     pub near: Option<C64>,
     /// The wavenumber, where no range varies it.
     pub k: Option<f64>,
@@ -54,6 +60,7 @@ impl Sweep<'_, '_> {
         self.ranges.iter().map(|r| r.values.len()).product()
     }
 
+    /// Whether an earlier run has left nothing.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

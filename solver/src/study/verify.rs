@@ -26,7 +26,9 @@ pub use order::{ResidualOrder, residual_order};
 /// What became of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
+    /// The value is within its bound.
     Passed,
+    /// It is not, or is no number.
     Failed,
     /// A value to know, not judged.
     Reported,
@@ -59,12 +61,15 @@ impl Verdict {
 pub struct Check {
     /// Part 1 to 5.
     pub part: usize,
+    /// What is checked.
     pub name: String,
     /// NaN where the check was left out.
     pub value: f64,
     /// What the value has to stay below (or, for a slope, reach).
     pub bound: f64,
+    /// What became of it.
     pub verdict: Verdict,
+    /// How, or at what.
     pub detail: String,
 }
 
@@ -151,12 +156,16 @@ impl fmt::Display for Check {
 /// The certificate of one Landau point; owns its data.
 #[derive(Clone, Debug)]
 pub struct Certificate {
+    /// Name of the model.
     pub model: String,
+    /// Its title.
     pub title: String,
+    /// The wavenumber.
     pub k: f64,
     /// M
     pub resolution: usize,
     has_coordinate: bool,
+    /// In the order of the parts.
     pub checks: Vec<Check>,
 }
 
@@ -198,6 +207,7 @@ impl Certificate {
         })
     }
 
+    /// The object that the command line prints.
     pub fn json(&self) -> Value {
         let checks: Vec<Value> = self.checks.iter().map(Check::json).collect();
         json!({"model": self.model, "k": self.k, "M": self.resolution, "checks": checks})

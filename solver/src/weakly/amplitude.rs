@@ -7,7 +7,9 @@ use nalgebra::{DMatrix, DVector};
 /// c0, c2, c4, … with their absolute errors.
 #[derive(Clone, Debug)]
 pub struct AmplitudeEquation {
+    /// c0, c2, c4, …
     pub coefficients: Vec<C64>,
+    /// Absolute errors of these.
     pub errors: Vec<f64>,
 }
 

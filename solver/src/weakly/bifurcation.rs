@@ -19,6 +19,7 @@ pub enum Side {
 /// Side and kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bifurcation {
+    /// Where the bifurcating solution lies.
     pub side: Side,
     /// A pair of complex eigenvalues, rather than one real one.
     pub oscillatory: bool,

@@ -30,9 +30,13 @@ pub enum Selection<'a> {
 
 /// c0 and c2 with the modes up to second order.
 pub struct LandauPoint<'p, 'm> {
+    /// The collocated problem.
     pub problem: &'p Problem<'m>,
+    /// The mode.
     pub pair: EigenPair,
+    /// Its eigenvalue.
     pub c0: C64,
+    /// The first Landau coefficient, P (3.22).
     pub c2: C64,
     /// What c2 is the sum of: 2 N2(X, X[0;2]), 2 N2(X̄, X[2;2]), 3 N3(X, X, X̄), projected.
     pub contributions: [C64; 3],

@@ -25,6 +25,7 @@ const VANISHING: f64 = 1e-3;
 /// A state that stands, drifts or oscillates with one frequency a mode.
 #[derive(Clone, Debug)]
 pub struct Equilibrium {
+    /// The amplitudes, turned so that as many as possible are real and positive.
     pub z: Vec<C64>,
     /// What dz_j/dt is, over i z_j; zero where nothing moves.
     pub frequencies: Vec<f64>,

@@ -25,6 +25,7 @@ const SAME: f64 = 1e-9;
 /// A mode with an amplitude of its own.
 #[derive(Clone)]
 pub struct CriticalMode {
+    /// Eigenvalue and vectors.
     pub pair: EigenPair,
     /// φ, normalised.
     pub profile: Mode,
@@ -36,8 +37,11 @@ pub struct CriticalMode {
 
 /// The modes and coefficients found so far.
 pub struct Expansion<'p, 'm> {
+    /// The collocated problem.
     pub problem: &'p Problem<'m>,
+    /// The modes with amplitudes.
     pub modes: Vec<CriticalMode>,
+    /// Their equations, as far as they are known.
     pub system: AmplitudeSystem,
     /// Multipliers of the closures at q = 0.
     pub multipliers: Vec<Multiplier>,
@@ -402,10 +406,13 @@ impl<'p, 'm> Expansion<'p, 'm> {
 /// How far one solved problem is from singularity.
 #[derive(Clone, Debug)]
 pub struct Distance {
+    /// The coefficient that it was solved for.
     pub monomial: Monomial,
+    /// Its wavenumber.
     pub q: f64,
     /// σ_α
     pub shift: C64,
+    /// Of σ_α from the spectrum of L at q.
     pub distance: f64,
 }
 

@@ -10,6 +10,7 @@ use crate::problem::{Problem, quarter_turn};
 pub struct Mode {
     /// Its wavenumber: ∂x → i q.
     pub q: f64,
+    /// Physical values at the unknowns' points.
     pub values: Vec<C64>,
     /// What stands beside the same amplitudes in ∂t X.
     pub rate: Vec<C64>,

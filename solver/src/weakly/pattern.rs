@@ -10,11 +10,13 @@ use crate::problem::Problem;
 
 /// Fields over a rectangle of the (x, y)-plane; arrays are `[field][y][x]`.
 pub struct Pattern {
+    /// Along the periodic coordinate.
     pub x: Vec<f64>,
     /// One height where the model has no cross-stream coordinate.
     pub y: Vec<f64>,
     /// A
     pub amplitude: f64,
+    /// Of the fields.
     pub names: Vec<String>,
     /// X⁰, `[field][y]`
     pub base: Vec<Vec<f64>>,
@@ -30,8 +32,11 @@ const ORDER: usize = 3;
 /// How fine, and how many wavelengths.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
+    /// Points along x.
     pub columns: usize,
+    /// Points along y.
     pub rows: usize,
+    /// Length along x.
     pub wavelengths: f64,
 }
 

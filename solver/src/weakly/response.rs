@@ -12,6 +12,7 @@ use crate::series::Arithmetic;
 pub struct Multiplier {
     /// What is closed, in words.
     pub closure: String,
+    /// Degree in the amplitudes.
     pub order: usize,
     /// The largest part of a balance that it makes up.
     pub size: f64,

@@ -6,13 +6,16 @@ use crate::series::Monomial;
 /// One term of an amplitude equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
+    /// z^p z̄^s
     pub monomial: Monomial,
+    /// Its coefficient.
     pub g: C64,
 }
 
 /// dz_j/dt = Σ over `equations[j]`, linear terms first, by degree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmplitudeSystem {
+    /// One a mode.
     pub equations: Vec<Vec<Term>>,
 }
 

@@ -9,7 +9,9 @@ use std::fmt;
 /// dR/dt = c0 R + (self |R|² + cross |L|²) R, and its mirror image for L.
 #[derive(Clone, Copy, Debug)]
 pub struct Waves {
+    /// Of |R|² R: c2 of the travelling wave.
     pub own: C64,
+    /// Of |L|² R.
     pub cross: C64,
     /// Absolute error of both.
     pub error: f64,
@@ -19,8 +21,11 @@ pub struct Waves {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Stable {
+    /// |R| alone, or |L| alone.
     Travelling,
+    /// |R| = |L|
     Standing,
+    /// None of the two, or undecided.
     Neither,
 }
 
