@@ -27,13 +27,36 @@ name = "none"
 vary = "k"
 between = [0.08, 0.1]
 [[figure.task.case]]
-printed = { k_u = 0.1748 }
+printed = { k_u = 0.1748, none = "0.1790", k_x = 1.0 }
 [[figure.task]]
 kind = "sweep"
 over = { name = "k", from = 0.15, to = 0.18, count = 5 }
 columns = ["a0", "a2", "amplitude"]
 [[figure.task.case]]
 label = "H = 40"
+
+[[figure.task]]
+kind = "claims"
+[[figure.task.claim]]
+says = "The bed is unstable"
+name = "a0"
+quantity = "a0"
+above = 0.0
+[[figure.task.claim]]
+says = "The upper onset lies beyond 0.18"
+name = "k_u"
+quantity = "place"
+at = { name = "k_u", vary = "k", between = [0.12, 0.2] }
+above = 0.18
+[[figure.task.claim]]
+says = "A second onset lies below 0.1"
+name = "k_v"
+quantity = "place"
+at = { name = "k_v", vary = "k", between = [0.08, 0.1] }
+below = 0.1
+[[figure.task.case]]
+label = "H = 40"
+k = 0.16
 
 [[figure]]
 id = "2"
@@ -74,7 +97,26 @@ fn a_study_becomes_a_report() {
         "--out",
         out.to_str().expect("a path"),
     ];
-    run(&arguments);
+    // What does not come out does not hide: not from the shell either.
+    let run_failing = || {
+        let answer = landau(&arguments);
+        assert_eq!(answer.status, 3, "{}", answer.err);
+        assert!(
+            answer.err.contains("the report is written, but none: "),
+            "{}",
+            answer.err
+        );
+        answer.out
+    };
+    let printed = run_failing();
+    assert!(
+        printed.contains("0.1790"),
+        "printed digits are kept: {printed}"
+    );
+    assert!(
+        printed.contains("fails: The upper onset lies beyond 0.18"),
+        "{printed}"
+    );
     let read = |name: &str| fs::read_to_string(out.join(name)).expect(name);
     let page = read("index.html");
     let links = attributes(&page, "src")
@@ -96,6 +138,44 @@ fn a_study_becomes_a_report() {
     let upper = &numbers[0];
     assert_eq!(upper["quantity"], "k_u");
     assert_eq!(upper["printed"], 0.1748);
+    assert_eq!(upper["status"], "ok");
+    // A number that did not come out stays beside its printed value, with the reason; so does a printed value that
+    // goes with no question.
+    let lost = &numbers[1];
+    assert_eq!(
+        (&lost["ours"], &lost["printed"]),
+        (&Value::Null, &Value::from(0.179))
+    );
+    assert!(
+        lost["status"]
+            .as_str()
+            .expect("a reason")
+            .contains("does not change sign")
+    );
+    let all = numbers.as_array().expect("numbers");
+    let stray = all.iter().find(|n| n["quantity"] == "k_x").expect("kept");
+    assert_eq!(stray["status"], "nothing in this task is called so");
+    let claims: Value = serde_json::from_str(&read("claims.json")).expect("JSON");
+    let verdicts: Vec<&str> = claims
+        .as_array()
+        .expect("claims")
+        .iter()
+        .map(|c| c["verdict"].as_str().expect("a verdict"))
+        .collect();
+    assert_eq!(verdicts, ["holds", "fails", "undecided"]);
+    let table = read("figure1-1.csv");
+    let header = table.lines().next().expect("a header");
+    assert_eq!(
+        header,
+        "case,k,c0_re,c0_im,c0_error,c2_re,c2_im,c2_error,amplitude,label,bifurcation,status"
+    );
+    assert!(
+        table
+            .lines()
+            .nth(1)
+            .expect("a row")
+            .ends_with("H = 40,supercritical pitchfork,ok")
+    );
     close(
         "k_u",
         upper["ours"].as_f64().expect("a number"),
@@ -117,7 +197,7 @@ fn a_study_becomes_a_report() {
     ] {
         fs::remove_file(out.join(name)).expect(name);
     }
-    run(&arguments);
+    run_failing();
     let after = [
         read("index.html"),
         read("numbers.json"),
@@ -130,7 +210,7 @@ fn a_study_becomes_a_report() {
         kept.map(|path| fs::metadata(path).and_then(|m| m.modified()).expect("kept"))
     };
     let first = written();
-    run(&arguments);
+    run_failing();
     assert_eq!(written(), first, "a finished task was computed again");
     browse(&out, attributes(&page, "src").len());
 }
@@ -176,6 +256,15 @@ fn a_study_that_asks_for_nothing_known_is_refused() {
         ),
         (STUDY.replace("vary = \"k\"", "vary = \"Q\""), "Q"),
         (STUDY.replace("shade = \"n\"", "shade = \"m\""), "`m`"),
+        (
+            STUDY.replace("id = \"2\"", "id = \"1\""),
+            "two figures have the id `1`",
+        ),
+        (STUDY.replace("count = 5", "count = 0"), "count = 0"),
+        (
+            STUDY.replace("none = \"0.1790\"", "none = \"0.1x\""),
+            "is no number",
+        ),
     ] {
         let file = folder.path().join("broken.toml");
         fs::write(&file, broken).expect("written");

@@ -3,7 +3,7 @@
 use crate::inspect;
 use crate::progress::Bar;
 use landau_report::library::Library;
-use landau_report::reproduce::{Errata, Study, Workshop};
+use landau_report::reproduce::{Errata, Study, Verdict, Workshop};
 use landau_solver::error::{Error, Result};
 use serde_json::json;
 use std::fs;
@@ -30,42 +30,58 @@ pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool
         home,
         out: out.to_owned(),
     };
-    let numbers = shop.run(&formulas, &Bar::new("reproducing"))?;
+    let found = shop.run(&formulas, &Bar::new("reproducing"))?;
     let page = out.join("index.html");
+    let failing = found.claims.iter().filter(|c| c.verdict == Verdict::Fails);
     if json {
         let object = json!({
             "study": path.display().to_string(),
             "report": page.display().to_string(),
             "figures": study.figure.len(),
-            "numbers": numbers.len(),
+            "numbers": found.numbers.len(),
+            "claims": found.claims.len(),
+            "claims_failing": failing.count(),
+            "failures": found.failures,
         });
         say!("{object}");
-        return Ok(());
-    }
-    say!(
-        "{:<8} {:<52} {:>14} {:>12}",
-        "figure",
-        "quantity",
-        "ours",
-        "printed"
-    );
-    for number in numbers.iter().filter(|n| n.printed.is_some()) {
-        let shown = |v: Option<f64>| v.map_or("-".to_owned(), |v| format!("{v:.6}"));
+    } else {
         say!(
             "{:<8} {:<52} {:>14} {:>12}",
-            number.figure,
-            number.quantity,
-            shown(number.ours),
-            shown(number.printed)
+            "figure",
+            "quantity",
+            "ours",
+            "printed"
+        );
+        for number in found.numbers.iter().filter(|n| n.printed.is_some()) {
+            let ours = number.ours.map_or("-".to_owned(), |v| format!("{v:.6}"));
+            say!(
+                "{:<8} {:<52} {ours:>14} {:>12}",
+                number.figure,
+                number.quantity,
+                number.printed_as.as_deref().unwrap_or("")
+            );
+        }
+        for claim in failing {
+            say!("figure {}: fails: {}", claim.figure, claim.says);
+        }
+        say!(
+            "{} figures, {} numbers, {} statements: {}",
+            study.figure.len(),
+            found.numbers.len(),
+            found.claims.len(),
+            page.display()
         );
     }
-    say!(
-        "{} figures, {} numbers: {}",
-        study.figure.len(),
-        numbers.len(),
-        page.display()
-    );
-    Ok(())
+    match found.failures.as_slice() {
+        [] => Ok(()),
+        [first, rest @ ..] => Err(Error::computation(format!(
+            "the report is written, but {first}{}",
+            match rest.len() {
+                0 => String::new(),
+                more => format!("; and {more} more that did not come out, named there"),
+            }
+        ))),
+    }
 }
 
 /// The study that stands in a folder `studies` here or one level below.

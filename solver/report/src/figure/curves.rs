@@ -6,6 +6,9 @@ use kuva::prelude::*;
 /// Below this the plotting library's logarithmic axes stand still.
 const LOWEST_LOGARITHMIC: f64 = 1e-10;
 
+/// Points on each side of a pole that may be its needle.
+const NEEDLE: usize = 12;
+
 /// How a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
@@ -31,6 +34,8 @@ pub struct Panel {
     pub y: String,
     pub logarithmic: [bool; 2],
     pub curves: Vec<Curve>,
+    /// Where curves jump through infinity.
+    pub poles: Vec<f64>,
 }
 
 impl Panel {
@@ -42,6 +47,7 @@ impl Panel {
             y,
             logarithmic: [false; 2],
             curves: Vec::new(),
+            poles: Vec::new(),
         }
     }
 
@@ -54,11 +60,36 @@ impl Panel {
         });
     }
 
-    /// A curve with poles: what stands far out of its bulk is a gap.
+    /// A curve with poles: each is marked by a dashed vertical, and the needles beside it are cut where the rest of the
+    /// curve ends. Nothing else is.
     pub fn curve_with_poles(&mut self, label: &str, style: Style, points: Vec<(f64, f64)>) {
-        let most = bulk(points.iter().map(|p| p.1));
-        let kept = |(x, y): (f64, f64)| (x, if y.abs() <= most { y } else { f64::NAN });
-        self.curve(label, style, points.into_iter().map(kept).collect());
+        let found = poles(&points);
+        let beside = |i: usize| {
+            found
+                .iter()
+                .any(|(at, _)| i + NEEDLE > *at && i <= *at + NEEDLE)
+        };
+        let far = points.iter().enumerate().filter(|(i, _)| !beside(*i));
+        let sizes = far.map(|(_, p)| p.1.abs()).filter(|y| y.is_finite());
+        let most = sizes.fold(0.0, f64::max);
+        let kept = |(i, (x, y)): (usize, (f64, f64))| {
+            let shown = !beside(i) || y.abs() <= 1.1 * most;
+            (x, if shown { y } else { f64::NAN })
+        };
+        let mut drawn: Vec<(f64, f64)> = Vec::new();
+        for (i, point) in points.iter().copied().enumerate() {
+            drawn.push(kept((i, point)));
+            // A gap at the pole itself.
+            if let Some((_, place)) = found.iter().find(|(at, _)| *at == i) {
+                drawn.push((*place, f64::NAN));
+            }
+        }
+        for (_, place) in &found {
+            if !self.poles.contains(place) {
+                self.poles.push(*place);
+            }
+        }
+        self.curve(label, style, drawn);
     }
 
     /// Runs of points that can be drawn.
@@ -89,6 +120,14 @@ impl Panel {
         if signs == [true, true] && !self.logarithmic[1] {
             let zero = LinePlot::new().with_data(vec![(low, 0.0), (high, 0.0)]);
             plots.push(zero.with_color("#999999").with_stroke_width(1.0).into());
+        }
+        let (bottom, top) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| {
+            (a.min(p.1), b.max(p.1))
+        });
+        for pole in &self.poles {
+            let line = LinePlot::new().with_data(vec![(*pole, bottom), (*pole, top)]);
+            let line = line.with_color("#999999").with_stroke_width(1.0);
+            plots.push(line.with_dashed().into());
         }
         for (index, curve) in self.curves.iter().enumerate() {
             let colour = COLOURS[index % COLOURS.len()];
@@ -161,9 +200,51 @@ pub fn panels(title: &str, panels: &[Panel]) -> Option<String> {
     Some(svg(figure))
 }
 
-/// The values beyond which a curve with poles is cut: six times its median size.
-fn bulk(values: impl Iterator<Item = f64>) -> f64 {
-    let mut sizes: Vec<f64> = values.map(f64::abs).filter(|v| v.is_finite()).collect();
+/// Where a curve jumps through infinity: after which point, and the place at which 1/y vanishes. On both sides the
+/// curve runs away from zero, and the jump is no step between small values.
+fn poles(points: &[(f64, f64)]) -> Vec<(usize, f64)> {
+    let mut sizes: Vec<f64> = points.iter().map(|p| p.1.abs()).collect();
+    sizes.retain(|y| y.is_finite());
     sizes.sort_by(f64::total_cmp);
-    6.0 * sizes.get(sizes.len() / 2).copied().unwrap_or(f64::INFINITY)
+    let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+    let jump = |i: &usize| {
+        let [a, b, c, d] = [i - 1, *i, i + 1, i + 2].map(|j| points[j].1);
+        let outwards = b.abs() > a.abs() && c.abs() > d.abs() && a * b > 0.0 && c * d > 0.0;
+        b * c < 0.0 && outwards && b.abs().min(c.abs()) > 2.0 * typical
+    };
+    let place = |i: usize| {
+        let ((x, b), (z, c)) = (points[i], points[i + 1]);
+        (i, x + (z - x) * c / (c - b))
+    };
+    let inner = 1..points.len().saturating_sub(2);
+    inner.filter(jump).map(place).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Panel, Style, poles};
+
+    fn curve(f: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        (0..101)
+            .map(|i| f64::from(i) / 100.0)
+            .map(|x| (x, f(x)))
+            .collect()
+    }
+
+    #[test]
+    fn poles_are_found_and_nothing_else() {
+        let found = poles(&curve(|x| 1.0 + 0.1 / (x - 0.4437)));
+        assert_eq!(found.len(), 1);
+        assert!((found[0].1 - 0.4437).abs() < 1e-3, "{found:?}");
+        assert!(poles(&curve(|x| (30.0 * x).sin())).is_empty());
+        assert!(poles(&curve(|x| 1000.0 * x * x)).is_empty());
+    }
+
+    /// A steep end is drawn whole.
+    #[test]
+    fn a_steep_end_is_no_needle() {
+        let mut panel = Panel::new("", "", "");
+        panel.curve_with_poles("", Style::Line, curve(|x| (12.0 * x).exp()));
+        assert!(panel.curves[0].points.iter().all(|p| p.1.is_finite()));
+    }
 }

@@ -11,7 +11,7 @@ mod study;
 mod task;
 
 pub use errata::{Errata, Judgement, all_explained};
-pub use outcome::{Number, Outcome, Picture, Table};
+pub use outcome::{Claim, Number, Outcome, Picture, Table, Verdict};
 pub use report::Formulas;
 pub use study::Study;
 
@@ -37,9 +37,9 @@ impl Workshop<'_> {
     /// Works through the study and writes the report.
     ///
     /// # Errors
-    /// A folder that cannot be written, a model that does not exist. What merely does not come out is
-    /// a sentence in the report.
-    pub fn run(&self, formulas: &Formulas, progress: &dyn Progress) -> Result<Vec<Number>> {
+    /// A folder that cannot be written, a model that does not exist. What merely does not come out stays in the
+    /// report where its number would stand, with the reason.
+    pub fn run(&self, formulas: &Formulas, progress: &dyn Progress) -> Result<Outcome> {
         let kept = self.out.join("kept");
         fs::create_dir_all(&kept)
             .map_err(|e| Error::input(format!("{} cannot be made: {e}", kept.display())))?;
@@ -57,12 +57,18 @@ impl Workshop<'_> {
             outcomes.push(outcome);
         }
         progress.end();
-        let numbers: Vec<Number> = outcomes.iter().flat_map(|o| o.numbers.clone()).collect();
         report::write(self, formulas, &outcomes)?;
-        let json = serde_json::to_string_pretty(&numbers)
-            .map_err(|e| Error::computation(e.to_string()))?;
-        write_whole(&self.out.join("numbers.json"), (json + "\n").as_bytes())?;
-        Ok(numbers)
+        let mut whole = Outcome::default();
+        outcomes.into_iter().for_each(|outcome| whole.add(outcome));
+        self.write_json("numbers.json", &whole.numbers)?;
+        self.write_json("claims.json", &whole.claims)?;
+        Ok(whole)
+    }
+
+    fn write_json<T: serde::Serialize>(&self, name: &str, list: &[T]) -> Result<()> {
+        let json = serde_json::to_string_pretty(list);
+        let json = json.map_err(|e| Error::computation(e.to_string()))?;
+        write_whole(&self.out.join(name), (json + "\n").as_bytes())
     }
 
     /// One task, from an earlier run where that has finished it.

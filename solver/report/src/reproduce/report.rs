@@ -2,7 +2,7 @@
 
 use super::Workshop;
 use super::errata::Judgement;
-use super::outcome::{Number, Outcome};
+use super::outcome::{Claim, Number, Outcome, Verdict};
 use landau_codegen::emit::text::Typeset;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::write_whole;
@@ -19,7 +19,11 @@ pub struct Formulas {
 }
 
 const STYLE: &str = "
-body { font: 16px/1.5 Georgia, 'DejaVu Serif', serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #1a1a1a }
+:root { color-scheme: light } math { font-family: 'Latin Modern Math', 'STIX Two Math', 'DejaVu Math TeX Gyre', math }
+.scroll { overflow-x: auto } img { background: #fff }
+@media print { nav { display: none } figure, tr, details, .formula { break-inside: avoid } h2, h3, h4 { break-after: avoid } .formula { overflow: visible } }
+@media (max-width: 40rem) { nav { columns: 1 } th, td { padding: 0.2rem 0.4rem } .about { white-space: normal } }
+body { background: #fff; font: 16px/1.5 Georgia, 'DejaVu Serif', serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #1a1a1a }
 h1, h2, h3 { line-height: 1.2 } h2 { margin-top: 3rem; border-top: 1px solid #ccc; padding-top: 1rem }
 nav { columns: 2; font-size: 0.9rem } figure { margin: 1.5rem 0; overflow-x: auto } img { max-width: 100% }
 figcaption { font-size: 0.9rem; color: #444 } table { border-collapse: collapse; font-size: 0.9rem }
@@ -27,7 +31,7 @@ th, td { padding: 0.2rem 0.8rem; border-bottom: 1px solid #ddd; text-align: left
 td.number { font-variant-numeric: tabular-nums; text-align: right } .failure { color: #a33 }
 .formula { overflow-x: auto; overflow-y: hidden; padding: 0.3rem 0 } .formula math, td math { display: inline math; math-style: normal } mtd { text-align: left }
 h4 { margin: 1.2rem 0 0.2rem } p.case { margin: 0.5rem 0 0; color: #444 }
-td p { margin: 0 } .about { white-space: nowrap } summary { cursor: pointer }";
+strong.fails { color: #a33 } td p { margin: 0 } .about { white-space: nowrap } summary { cursor: pointer }";
 
 pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) -> Result<()> {
     let study = shop.study;
@@ -60,6 +64,7 @@ pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) 
                 h2 { "Figure " (figure.id) ". " (figure.title) }
                 p { (figure.text) }
                 @for picture in &pictures { (picture) }
+                @if !outcome.claims.is_empty() { (claims(&outcome.claims)) }
                 @if !outcome.numbers.is_empty() { (numbers(&outcome.numbers)) }
                 @for failure in &outcome.failures { p.failure { "Did not come out: " (failure) } }
             }
@@ -97,23 +102,49 @@ pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) 
     write_whole(&path, page.into_string().as_bytes())
 }
 
+/// Numbers beside the printed ones; columns that say nothing are left out.
 fn numbers(list: &[Number]) -> Markup {
-    let shown = |value: Option<f64>| value.map_or("–".to_owned(), digits);
-    let difference = |n: &Number| match (n.ours, n.printed) {
-        (Some(ours), Some(printed)) => format!("{:+.1e}", ours - printed),
-        _ => String::new(),
-    };
+    let printed = list.iter().any(|n| n.printed.is_some());
+    let notes = list.iter().any(|n| !n.note.is_empty());
+    let difference = |n: &Number| n.units().map_or(String::new(), |u| format!("{u:+.1}"));
     html! {
-        table {
-            thead { tr { th { "Quantity" } th { "Ours" } th { "Printed" } th { "Difference" } th { "Note" } } }
+        div.scroll { table {
+            thead { tr {
+                th { "Quantity" } th { "Ours" }
+                @if printed { th { "Printed" } th { "Difference in units of its last digit" } }
+                @if notes { th { "Note" } }
+            } }
             tbody {
                 @for n in list {
                     tr {
-                        td { (n.quantity) } td.number { (shown(n.ours)) } td.number { (shown(n.printed)) }
-                        td.number { (difference(n)) } td { (n.note) }
+                        td { (n.quantity) }
+                        @match n.ours {
+                            Some(ours) => td.number { (digits(ours)) @if let Some(e) = n.error { " ± " (format!("{e:.0e}")) } },
+                            None => td.failure { (n.status) },
+                        }
+                        @if printed {
+                            td.number { (n.printed_as.as_deref().unwrap_or("")) } td.number { (difference(n)) }
+                        }
+                        @if notes { td { (n.note) } }
                     }
                 }
             }
+        } }
+    }
+}
+
+/// Statements with what became of them, and the numbers that decide.
+fn claims(list: &[Claim]) -> Markup {
+    let word = |claim: &Claim| match claim.verdict {
+        Verdict::Holds => "holds",
+        Verdict::Fails => "fails",
+        Verdict::Undecided => "undecided",
+    };
+    html! {
+        @for claim in list {
+            p { "“" (claim.says) "” " strong class=(word(claim)) { (word(claim)) } "." }
+            details { summary { "the numbers that decide it" }
+                ul { @for line in &claim.evidence { li { (line) } } } }
         }
     }
 }
@@ -190,10 +221,10 @@ fn errata(judgements: &[Judgement]) -> Result<Markup> {
                 "Of each other one the slips are named: mended, all of them together, the formula agrees, and with any "
                 "one left it does not. Letters with a nought are base values; in L, N2, N3 and the conditions the others "
                 "are perturbations, in L† adjoint fields." }
-            table {
+            div.scroll { table {
                 thead { tr { th { "Formula" } th { "About" } th { "Comparison" } } }
                 tbody { @for row in &rows { (row) } }
-            }
+            } }
         }
     })
 }

@@ -2,7 +2,7 @@
 
 use landau_solver::error::{Error, Result};
 use landau_solver::study::row::Column;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -53,10 +53,97 @@ pub struct Case {
     pub resolution: Option<usize>,
     /// Printed values by the name of the quantity.
     #[serde(default)]
-    pub printed: BTreeMap<String, f64>,
+    pub printed: BTreeMap<String, Printed>,
     /// An honest sentence beside the numbers of this case.
     #[serde(default)]
     pub note: String,
+}
+
+/// A printed number with its digits: in the file a number, or a text where the last digits are zeros.
+#[derive(Clone, Debug, Serialize, PartialEq)]
+pub struct Printed {
+    pub value: f64,
+    pub text: String,
+}
+
+impl Printed {
+    /// The number that a text prints; NaN where it prints none.
+    pub fn of(text: &str) -> Self {
+        Printed {
+            value: text.trim().parse().unwrap_or(f64::NAN),
+            text: text.trim().to_owned(),
+        }
+    }
+
+    /// One in the last printed place.
+    pub fn last_digit(&self) -> f64 {
+        let (mantissa, exponent) = self
+            .text
+            .split_once(['e', 'E'])
+            .unwrap_or((&self.text, "0"));
+        let decimals = mantissa.split_once('.').map_or(0, |(_, d)| d.len() as i32);
+        10_f64.powi(exponent.parse::<i32>().unwrap_or(0) - decimals)
+    }
+}
+
+impl<'d> Deserialize<'d> for Printed {
+    fn deserialize<D: Deserializer<'d>>(input: D) -> std::result::Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Written {
+            Number(f64),
+            Text(String),
+            Kept { text: String },
+        }
+        let printed = match Written::deserialize(input)? {
+            Written::Number(value) => Printed::of(&value.to_string()),
+            Written::Text(text) | Written::Kept { text, .. } => Printed::of(&text),
+        };
+        match printed.value.is_finite() {
+            true => Ok(printed),
+            false => Err(serde::de::Error::custom(format!(
+                "`{}` is no number; a printed value is a number, or a text with its digits such as \"0.1790\"",
+                printed.text
+            ))),
+        }
+    }
+}
+
+/// What decides a statement.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Where the critical point lies.
+    Place,
+    A0,
+    A2,
+    /// A_e
+    Amplitude,
+}
+
+/// A statement of the source, and what decides it in each case.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Statement {
+    pub says: String,
+    /// What the number is called.
+    pub name: String,
+    pub quantity: Quantity,
+    /// At a critical point; at the wavenumber of the case otherwise.
+    pub at: Option<Asked>,
+    pub above: Option<f64>,
+    pub below: Option<f64>,
+    /// Within this part of the first case's value.
+    pub as_first_within: Option<f64>,
+}
+
+/// `label: quantity`
+pub fn named(case: &Case, quantity: &str) -> String {
+    if case.label.is_empty() {
+        quantity.to_owned()
+    } else {
+        format!("{}: {quantity}", case.label)
+    }
 }
 
 /// What sort of critical point.
@@ -133,6 +220,11 @@ pub enum Task {
         asked: Vec<Asked>,
         against: Option<Axis>,
     },
+    /// Statements of the source, decided by numbers.
+    Claims {
+        case: Vec<Case>,
+        claim: Vec<Statement>,
+    },
     /// A_e at single places.
     Values { case: Vec<Case> },
     /// A_e against the distance from a critical point, and the fitted exponent.
@@ -164,6 +256,26 @@ pub enum Task {
     },
 }
 
+impl Task {
+    /// What varies, where something does.
+    fn axis(&self) -> Option<&Axis> {
+        match self {
+            Task::Spectrum { over, .. }
+            | Task::Sweep { over, .. }
+            | Task::Resonance { over, .. }
+            | Task::Orders { over, .. }
+            | Task::SecondHarmonic { over, .. }
+            | Task::Circulation { over, .. } => Some(over),
+            Task::Critical { against, .. } => against.as_ref(),
+            Task::Profiles { .. }
+            | Task::Claims { .. }
+            | Task::Values { .. }
+            | Task::PowerLaw { .. }
+            | Task::Pattern { .. } => None,
+        }
+    }
+}
+
 fn two() -> f64 {
     2.0
 }
@@ -180,7 +292,7 @@ pub struct Axis {
 
 impl Axis {
     pub fn values(&self) -> Vec<f64> {
-        let steps = self.count.max(2) - 1;
+        let steps = self.count - 1;
         (0..=steps)
             .map(|i| self.from + (self.to - self.from) * i as f64 / steps as f64)
             .collect()
@@ -195,6 +307,34 @@ impl Study {
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path)
             .map_err(|e| Error::input(format!("{} cannot be read: {e}", path.display())))?;
-        toml::from_str(&text).map_err(|e| Error::input(format!("{}: {e}", path.display())))
+        let study: Study =
+            toml::from_str(&text).map_err(|e| Error::input(format!("{}: {e}", path.display())))?;
+        study
+            .check()
+            .map_err(|e| Error::input(format!("{}: {e}", path.display())))?;
+        Ok(study)
+    }
+
+    /// What is well written but cannot be meant.
+    fn check(&self) -> Result<()> {
+        let mut known: Vec<&str> = Vec::new();
+        for figure in &self.figure {
+            if known.contains(&figure.id.as_str()) {
+                return Err(Error::input(format!(
+                    "two figures have the id `{}`: the files of one would replace those of the other",
+                    figure.id
+                )));
+            }
+            known.push(&figure.id);
+            for axis in figure.task.iter().filter_map(Task::axis) {
+                if axis.count < 2 {
+                    return Err(Error::input(format!(
+                        "figure {}: count = {} along `{}`: it accepts whole numbers from 2 on",
+                        figure.id, axis.count, axis.name
+                    )));
+                }
+            }
+        }
+        Ok(())
     }
 }

@@ -2,8 +2,8 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Axis, Case};
-use super::draw::{named, picture};
+use super::super::study::{Axis, Case, named};
+use super::draw::picture;
 use super::each;
 use crate::figure::{Panel, Style};
 use landau_solver::error::Result;
@@ -115,15 +115,20 @@ pub(super) fn orders(shop: &Workshop, cases: &[Case], asked: &Orders) -> Result<
             let near = rows
                 .iter()
                 .min_by(|a, b| (a[1] - k).abs().total_cmp(&(b[1] - k).abs()));
-            outcome.numbers.push(Number {
-                figure: asked.figure.to_owned(),
-                quantity: named(case, &format!("A_e of the Padé approximant at k = {k}")),
-                ours: near
-                    .filter(|row| (row[1] - k).abs() < 1e-9)
-                    .map(|row| row[2 + orders.len()]),
+            let quantity = format!("A_e of the Padé approximant at k = {k}");
+            let number = Number::new(asked.figure, case, &quantity, named(case, &quantity));
+            let number = Number {
                 printed: Some(*amplitude),
-                note: "beside the fully nonlinear state".to_owned(),
-            });
+                printed_as: Some(amplitude.to_string()),
+                note: "printed: the fully nonlinear state".to_owned(),
+                ..number
+            };
+            outcome
+                .numbers
+                .push(match near.filter(|row| (row[1] - k).abs() < 1e-9) {
+                    Some(row) => number.answered(row[2 + orders.len()], None),
+                    None => number.failed("the axis does not pass there"),
+                });
         }
     }
     let known = asked.reference.iter().map(|[k, a]| (*k, *a)).collect();

@@ -2,8 +2,8 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Asked, Axis, Case};
-use super::draw::{named, picture};
+use super::super::study::{Asked, Axis, Case, named};
+use super::draw::picture;
 use super::each;
 use super::points::question;
 use crate::figure::{Panel, Style};
@@ -49,10 +49,23 @@ pub(super) fn sweep(
         .iter()
         .map(|column| Panel::new(names(column).0, &over.name, names(column).1))
         .collect();
-    let mut table = Table::new(&["case", &over.name, "a0", "b0", "a2", "b2", "A_e"]);
+    // The names of a sweep's own table.
+    let mut table = Table::new(&[
+        "case",
+        &over.name,
+        "c0_re",
+        "c0_im",
+        "c0_error",
+        "c2_re",
+        "c2_im",
+        "c2_error",
+        "amplitude",
+    ])
+    .with_words(&["label", "bifurcation", "status"]);
+    let mut unconverged = 0;
     for (index, rows) in &found {
+        let label = &cases[*index].label;
         for (panel, quantity) in drawn.iter_mut().zip(columns) {
-            let label = &cases[*index].label;
             let points = column(rows, *quantity);
             match quantity {
                 Column::A0 => panel.curve(label, Style::Line, points),
@@ -63,15 +76,30 @@ pub(super) fn sweep(
         }
         for row in rows {
             let pair = |c: Option<[f64; 2]>| c.unwrap_or([f64::NAN; 2]);
+            let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
             let ([a0, b0], [a2, b2]) = (pair(row.c0), pair(row.c2));
-            let amplitude = row.amplitude.unwrap_or(f64::NAN);
-            let place = row.coordinates[0];
-            table
-                .rows
-                .push(vec![(*index + 1) as f64, place, a0, b0, a2, b2, amplitude]);
+            let numbers = vec![
+                (*index + 1) as f64,
+                row.coordinates[0],
+                a0,
+                b0,
+                number(row.c0_error),
+                a2,
+                b2,
+                number(row.c2_error),
+                number(row.amplitude),
+            ];
+            table.push(numbers, &[label, &row.bifurcation, &row.status]);
+            unconverged += usize::from(row.c2.is_none());
         }
     }
-    picture(&mut outcome, "", &drawn, table);
+    let caption = match unconverged {
+        0 => String::new(),
+        count => {
+            format!("{count} points without a converged value are left out; the table says why.")
+        }
+    };
+    picture(&mut outcome, &caption, &drawn, table);
     Ok(outcome)
 }
 
@@ -86,7 +114,7 @@ pub(super) fn resonance(shop: &Workshop, cases: &[Case], over: &Axis) -> Result<
         })
     })?;
     let mut panel = Panel::new("2:1 resonance", "k", "growth rate");
-    let mut table = Table::new(&["case", "k", "a0(k)", "a0(2k)/2"]);
+    let mut table = Table::new(&["case", "k", "a0(k)", "a0(2k)/2"]).with_words(&["label"]);
     for (index, (one, two)) in &found {
         let label = &cases[*index].label;
         let value = |row: &Row| row.c0.map_or(f64::NAN, |c| c[0]);
@@ -95,7 +123,7 @@ pub(super) fn resonance(shop: &Workshop, cases: &[Case], over: &Axis) -> Result<
         let second = second.map(|(r, d)| (r.coordinates[0], 0.5 * value(d)));
         let (first, second): (Vec<_>, Vec<_>) = (first.collect(), second.collect());
         for (a, b) in first.iter().zip(&second) {
-            table.rows.push(vec![(*index + 1) as f64, a.0, a.1, b.1]);
+            table.push(vec![(*index + 1) as f64, a.0, a.1, b.1], &[label]);
         }
         panel.curve(&format!("{label} a0(k)"), Style::Line, first);
         panel.curve(&format!("{label} a0(2k)/2"), Style::Dashed, second);
@@ -159,13 +187,8 @@ pub(super) fn power_law(
         panel.curve(&label, Style::Dots, points);
         panel.curve("slope 1/2", Style::Dashed, law);
         for (quantity, ours) in [(asked.name.as_str(), place), ("exponent", slope)] {
-            outcome.numbers.push(Number {
-                figure: figure.to_owned(),
-                quantity: named(case, quantity),
-                ours: Some(ours),
-                printed: case.printed.get(quantity).copied(),
-                note: case.note.clone(),
-            });
+            let number = Number::new(figure, case, quantity, named(case, quantity));
+            outcome.numbers.push(number.answered(ours, None));
         }
     }
     picture(&mut outcome, "", &[panel], table);

@@ -1,6 +1,7 @@
 //! What a study can ask for, one module a sort of answer.
 
 mod beyond;
+mod claims;
 mod curves;
 mod draw;
 mod planes;
@@ -15,6 +16,12 @@ use rayon::prelude::*;
 
 /// Computes one task of a figure; files that it writes itself begin with `stem`.
 pub(super) fn run(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outcome> {
+    let mut outcome = answer(shop, figure, stem, task)?;
+    outcome.demand_partners(figure, cases(task));
+    Ok(outcome)
+}
+
+fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outcome> {
     match task {
         Task::Profiles {
             case,
@@ -66,6 +73,7 @@ pub(super) fn run(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Res
             asked,
             against,
         } => points::critical(shop, figure, case, asked, against.as_ref()),
+        Task::Claims { case, claim } => claims::claims(shop, figure, case, claim),
         Task::Values { case } => points::values(shop, figure, case),
         Task::PowerLaw {
             case,
@@ -109,6 +117,7 @@ pub(super) fn cases(task: &Task) -> &[Case] {
         | Task::Orders { case, .. }
         | Task::SecondHarmonic { case, .. }
         | Task::Critical { case, .. }
+        | Task::Claims { case, .. }
         | Task::Values { case }
         | Task::PowerLaw { case, .. }
         | Task::Pattern { case, .. }

@@ -2,8 +2,8 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Picture, Table};
-use super::super::study::{Axis, Case};
-use super::draw::{named, picture};
+use super::super::study::{Axis, Case, named};
+use super::draw::picture;
 use super::each;
 use crate::data::plane::{attributes, dataset};
 use crate::figure::{Panel, Style, pattern_pair};
@@ -80,13 +80,8 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
             table: None,
             files,
         });
-        outcome.numbers.push(Number {
-            figure: wanted.figure.to_owned(),
-            quantity: named(case, "A_e"),
-            ours: Some(amplitude),
-            printed: case.printed.get("A_e").copied(),
-            note: case.note.clone(),
-        });
+        let number = Number::new(wanted.figure, case, "A_e", named(case, "A_e"));
+        outcome.numbers.push(number.answered(amplitude, None));
     }
     Ok(outcome)
 }
@@ -160,13 +155,8 @@ pub(super) fn circulation(
                 ("largest circulation", value),
                 ("where it is reached", place),
             ] {
-                outcome.numbers.push(Number {
-                    figure: figure.to_owned(),
-                    quantity: named(case, what),
-                    ours: Some(ours),
-                    printed: case.printed.get(what).copied(),
-                    note: case.note.clone(),
-                });
+                let number = Number::new(figure, case, what, named(case, what));
+                outcome.numbers.push(number.answered(ours, None));
             }
         }
         picture(&mut outcome, &case.label, &[strength, height], table);

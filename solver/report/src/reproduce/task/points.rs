@@ -2,12 +2,13 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Asked, Axis, Case, Of};
-use super::draw::{named, picture};
+use super::super::study::{Asked, Axis, Case, Of, named};
+use super::draw::picture;
 use super::{Named, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
-use landau_solver::study::critical::{self, Quantity, Question};
+use landau_solver::study::accuracy::accuracy;
+use landau_solver::study::critical::{self, Critical, Quantity, Question};
 use landau_solver::study::minimise;
 use landau_solver::study::{self, Setup, Silent};
 use landau_solver::weakly::Selection;
@@ -28,13 +29,13 @@ pub(super) fn question(setup: &Setup, case: &Case, asked: &Asked) -> Result<Ques
     })
 }
 
-fn answer(setup: &Setup, case: &Case, asked: &Asked) -> Result<[f64; 2]> {
+/// The first answer of a question.
+pub(super) fn critical_point(setup: &Setup, case: &Case, asked: &Asked) -> Result<Critical> {
     let question = question(setup, case, asked)?;
-    let found = match asked.minimize {
-        Some([from, to]) => minimise::minimise(setup, question, (from, to), &Silent)?,
-        None => critical::critical(setup, question, &Silent)?.swap_remove(0),
-    };
-    Ok([found.value, found.k])
+    match asked.minimize {
+        Some([from, to]) => minimise::minimise(setup, question, (from, to), &Silent),
+        None => Ok(critical::critical(setup, question, &Silent)?.swap_remove(0)),
+    }
 }
 
 /// One question about one case.
@@ -90,30 +91,38 @@ pub(super) fn critical(
     }
     let found = each(&inquiries, &mut outcome.failures, |inquiry| {
         let asked = &asked[inquiry.question];
-        shop.with_setup(&inquiry.case, |setup| answer(setup, &inquiry.case, asked))
+        shop.with_setup(&inquiry.case, |setup| {
+            critical_point(setup, &inquiry.case, asked)
+        })
     })?;
-    let mut table = Table::new(&[
-        against.map_or("case", |a| a.name.as_str()),
-        "question",
-        "value",
-        "k",
-    ]);
-    for (index, [value, k]) in found {
+    let first = against.map_or("case", |a| a.name.as_str());
+    let mut table =
+        Table::new(&[first, "question", "value", "error", "k"]).with_words(&["label", "status"]);
+    let mut found = found.into_iter().peekable();
+    for (index, inquiry) in inquiries.iter().enumerate() {
         let Inquiry {
             case,
             label,
             place,
             question,
-        } = &inquiries[index];
-        let number = (question + 1) as f64;
-        table.rows.push(vec![*place, number, value, k]);
-        outcome.numbers.push(Number {
-            figure: figure.to_owned(),
-            quantity: label.clone(),
-            ours: Some(value),
-            printed: case.printed.get(&asked[*question].name).copied(),
-            note: case.note.clone(),
-        });
+        } = inquiry;
+        let position = (question + 1) as f64;
+        let number = Number::new(figure, case, &asked[*question].name, label.clone());
+        // What did not come out stays where its number would stand.
+        let number = match found.next_if(|(found, _)| *found == index) {
+            Some((_, point)) => {
+                let row = vec![*place, position, point.value, point.error, point.k];
+                table.push(row, &[label, "ok"]);
+                number.answered(point.value, Some(point.error))
+            }
+            None => {
+                let reason = outcome.reason(label);
+                let gap = f64::NAN;
+                table.push(vec![*place, position, gap, gap, gap], &[label, &reason]);
+                number.failed(&reason)
+            }
+        };
+        outcome.numbers.push(number);
     }
     if let Some(axis) = against {
         let mut drawn = Vec::new();
@@ -125,7 +134,7 @@ pub(super) fn critical(
                 chosen.map(|r| (r[0], r[column])).collect()
             };
             values.curve("", Style::Line, of(2));
-            waves.curve("", Style::Line, of(3));
+            waves.curve("", Style::Line, of(4));
             drawn.push(values);
             if asked.minimize.is_some() {
                 drawn.push(waves);
@@ -145,18 +154,23 @@ pub(super) fn values(shop: &Workshop, figure: &str, cases: &[Case]) -> Result<Ou
         shop.with_setup(case, |setup| {
             let base = setup.base(None)?;
             setup.with_point(&base, k, Selection::Leading, |point| {
-                Ok([Some(point.c0.re), Some(point.c2.re), point.amplitude()])
+                let error = accuracy(setup, &base, point)?;
+                let values = [Some(point.c0.re), Some(point.c2.re), point.amplitude()];
+                Ok((values, [Some(error.c0), Some(error.c2), None]))
             })
         })
     })?;
-    for (index, values) in found {
-        for (quantity, ours) in ["a0", "a2", "A_e"].into_iter().zip(values) {
-            outcome.numbers.push(Number {
-                figure: figure.to_owned(),
-                quantity: named(&cases[index], quantity),
-                ours,
-                printed: cases[index].printed.get(quantity).copied(),
-                note: cases[index].note.clone(),
+    let mut found = found.into_iter().peekable();
+    for (index, case) in cases.iter().enumerate() {
+        let own = found.next_if(|(found, _)| *found == index);
+        for (position, quantity) in ["a0", "a2", "A_e"].into_iter().enumerate() {
+            let number = Number::new(figure, case, quantity, named(case, quantity));
+            outcome.numbers.push(match &own {
+                Some((_, (values, errors))) => match values[position] {
+                    Some(value) => number.answered(value, errors[position]),
+                    None => number.failed("no equilibrium at cubic order"),
+                },
+                None => number.failed(&outcome.reason(&case.label)),
             });
         }
     }

@@ -2,12 +2,14 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Axis, Case};
-use super::draw::{named, picture};
+use super::super::study::{Axis, Case, named};
+use super::draw::picture;
 use super::each;
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
+use landau_solver::model::C64;
 use landau_solver::parameters::Parameters;
+use landau_solver::problem::Problem;
 use landau_solver::spectrum;
 use landau_solver::study::Setup;
 use landau_solver::study::quadrature::adjoint_mode;
@@ -65,7 +67,7 @@ pub(super) fn profiles(
         .collect();
     let mut header = vec!["case", vertical.as_str()];
     header.extend(fields.iter().map(String::as_str));
-    let mut table = Table::new(&header);
+    let mut table = Table::new(&header).with_words(&["label"]);
     for (index, (columns, heights)) in found {
         for (panel, values) in drawn.iter_mut().zip(&columns[1..]) {
             let points = columns[0].iter().copied().zip(values.iter().copied());
@@ -74,15 +76,15 @@ pub(super) fn profiles(
         for i in 0..POINTS {
             let mut row = vec![(index + 1) as f64];
             row.extend(columns.iter().map(|column| column[i]));
-            table.rows.push(row);
+            table.push(row, &[&cases[index].label]);
         }
         if let Some([fitted, predicted]) = heights {
+            let quantity = "scale height of the tail, fitted";
+            let label = named(&cases[index], quantity);
+            let number = Number::new(figure, &cases[index], quantity, label);
             outcome.numbers.push(Number {
-                figure: figure.to_owned(),
-                quantity: named(&cases[index], "scale height of the tail, fitted"),
-                ours: Some(fitted),
-                printed: None,
                 note: format!("the exponential tail predicts {predicted:.4}"),
+                ..number.answered(fitted, None)
             });
         }
     }
@@ -135,39 +137,58 @@ pub(super) fn spectrum(
                 let mut rows = Vec::new();
                 for k in over.values() {
                     let mode = spectrum::leading(problem, k)?;
-                    let adjoint =
-                        adjoint_mode(problem, &mode).map_or(f64::NAN, |adjoint| adjoint.c.re);
-                    rows.push([k, mode.c.re, adjoint]);
+                    // Where inverse iteration finds no isolated partner, the nearest of all of L†.
+                    let adjoint = match adjoint_mode(problem, &mode) {
+                        Ok(adjoint) => adjoint.c,
+                        Err(_) => nearest_adjoint(problem, k, mode.c)?,
+                    };
+                    let gap = (adjoint.conj() - mode.c).norm();
+                    rows.push([k, mode.c.re, adjoint.re, gap]);
                 }
                 Ok(rows)
             })
         })
     })?;
     let mut panel = Panel::new("least stable mode", "k", "growth rate");
-    let mut table = Table::new(&["case", "k", "L", "L†"]);
+    let mut table = Table::new(&["case", "k", "L", "L†", "difference"]).with_words(&["label"]);
     let mut difference = Panel::new("L against L†", "k", "|difference|");
     difference.logarithmic[1] = true;
     for (index, rows) in found {
         let label = &all[index].label;
-        let of = |column: usize| rows.iter().map(|r| (r[0], r[column])).collect();
+        let of =
+            |column: usize| -> Vec<(f64, f64)> { rows.iter().map(|r| (r[0], r[column])).collect() };
         panel.curve(&format!("L, {label}"), Style::Line, of(1));
         panel.curve(&format!("L†, {label}"), Style::Dots, of(2));
-        let gaps: Vec<(f64, f64)> = rows.iter().map(|r| (r[0], (r[1] - r[2]).abs())).collect();
-        let largest = gaps.iter().map(|g| g.1).filter(|g| g.is_finite());
-        outcome.numbers.push(Number {
-            figure: figure.to_owned(),
-            quantity: format!("{label}: largest |L − L†| over {}", over.name),
-            ours: Some(largest.fold(0.0, f64::max)),
-            printed: None,
-            note: all[index].note.clone(),
-        });
-        difference.curve(label, Style::Line, gaps);
+        let quantity = format!("largest |L − L†| over {}", over.name);
+        let number = Number::new(
+            figure,
+            &all[index],
+            &quantity,
+            format!("{label}: {quantity}"),
+        );
+        // A gap that is no number is larger than any.
+        let wider = |most: f64, row: &[f64; 4]| match row[3].is_nan() || row[3] > most {
+            true => row[3],
+            false => most,
+        };
+        outcome
+            .numbers
+            .push(number.answered(rows.iter().fold(0.0, wider), None));
+        difference.curve(label, Style::Line, of(3));
         for row in &rows {
-            table
-                .rows
-                .push(vec![(index + 1) as f64, row[0], row[1], row[2]]);
+            let [k, direct, adjoint, gap] = *row;
+            let row = vec![(index + 1) as f64, k, direct, adjoint, gap];
+            table.push(row, &[label]);
         }
     }
     picture(&mut outcome, "", &[panel, difference], table);
     Ok(outcome)
+}
+
+/// The eigenvalue of L† whose conjugate is nearest to c.
+fn nearest_adjoint(problem: &Problem, k: f64, c: C64) -> Result<C64> {
+    let values = spectrum::adjoint_eigenvalues(problem, k)?.values;
+    let gap = |d: &C64| (d.conj() - c).norm();
+    let nearest = values.into_iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
+    nearest.ok_or_else(|| Error::computation("L† has no finite eigenvalue"))
 }

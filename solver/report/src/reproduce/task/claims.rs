@@ -1,0 +1,156 @@
+//! Statements of the source, decided by numbers: holds, fails (where, by how much), or undecided.
+
+use super::super::Workshop;
+use super::super::outcome::{Claim, Number, Outcome, Verdict};
+use super::super::study::{Case, Quantity, Statement, named};
+use super::each;
+use super::points::critical_point;
+use landau_solver::error::{Error, Result};
+use landau_solver::study::Setup;
+use landau_solver::study::point::PointReport;
+use landau_solver::weakly::Selection;
+
+/// A number with its error.
+type Value = (f64, f64);
+
+/// What decides a statement in one case.
+fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
+    let found = match &statement.at {
+        Some(asked) => Some(critical_point(setup, case, asked)?),
+        None => None,
+    };
+    if statement.quantity == Quantity::Place {
+        let missing = || Error::input("a statement about a place needs `at`: a critical point");
+        let place = found.ok_or_else(missing)?;
+        return Ok((place.value, place.error));
+    }
+    // The critical point may lie along k, or along a parameter.
+    let (mut setup, mut k) = (setup.clone(), case.k);
+    if let (Some(point), Some(asked)) = (&found, &statement.at) {
+        k = Some(point.k);
+        if asked.vary != "k" {
+            setup.set(&[format!("{}={:e}", asked.vary, point.value)])?;
+        }
+    }
+    let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
+    let point = PointReport::compute(&setup, k.ok_or_else(missing)?, Selection::Leading, 3)?;
+    let amplitude_error = |a: f64| {
+        // A² = −a0/a2
+        let relative = point.error.c0 / point.c0.re.abs() + point.error.c2 / point.c2.re.abs();
+        0.5 * a * relative
+    };
+    match statement.quantity {
+        Quantity::A0 => Ok((point.c0.re, point.error.c0)),
+        Quantity::A2 => Ok((point.c2.re, point.error.c2)),
+        Quantity::Amplitude => {
+            let a = point
+                .amplitude
+                .ok_or_else(|| Error::computation("there is no equilibrium at cubic order"))?;
+            Ok((a, amplitude_error(a)))
+        }
+        Quantity::Place => unreachable!("answered above"),
+    }
+}
+
+/// Whether a value meets the statement; nothing where its error leaves that open.
+fn meets(statement: &Statement, first: Option<Value>, (value, error): Value) -> Option<bool> {
+    let beyond = |distance: f64| match distance.abs() > error {
+        true => Some(distance > 0.0),
+        false => None,
+    };
+    let mut demands: Vec<Option<bool>> = Vec::new();
+    demands.extend(statement.above.map(|bound| beyond(value - bound)));
+    demands.extend(statement.below.map(|bound| beyond(bound - value)));
+    if let (Some(share), Some((reference, _))) = (statement.as_first_within, first) {
+        demands.push(beyond(share * reference.abs() - (value - reference).abs()));
+    }
+    if demands.contains(&Some(false)) {
+        return Some(false);
+    }
+    demands
+        .into_iter()
+        .collect::<Option<Vec<bool>>>()
+        .map(|_| true)
+}
+
+pub(super) fn claims(
+    shop: &Workshop,
+    figure: &str,
+    cases: &[Case],
+    statements: &[Statement],
+) -> Result<Outcome> {
+    let mut outcome = Outcome::default();
+    for statement in statements {
+        // What has no answer leaves the statement undecided: said there, not as a failure of the study.
+        let mut missing = Vec::new();
+        let found = each(cases, &mut missing, |case| {
+            shop.with_setup(case, |setup| value(setup, case, statement))
+        })?;
+        let first = found.iter().find(|(index, _)| *index == 0).map(|(_, v)| *v);
+        let mut verdicts = Vec::new();
+        let mut evidence = missing.clone();
+        for (index, value) in &found {
+            let verdict = meets(statement, first, *value);
+            let word = match verdict {
+                Some(true) => "holds",
+                Some(false) => "fails",
+                None => "undecided",
+            };
+            let label = named(&cases[*index], &statement.name);
+            evidence.push(format!(
+                "{label} = {:.6} ± {:.1e}: {word}",
+                value.0, value.1
+            ));
+            verdicts.push(verdict);
+            let number = Number::new(figure, &cases[*index], &statement.name, label);
+            outcome
+                .numbers
+                .push(number.answered(value.0, Some(value.1)));
+        }
+        let verdict = if verdicts.contains(&Some(false)) {
+            Verdict::Fails
+        } else if missing.is_empty() && verdicts.iter().all(|v| *v == Some(true)) {
+            Verdict::Holds
+        } else {
+            Verdict::Undecided
+        };
+        outcome.claims.push(Claim {
+            figure: figure.to_owned(),
+            says: statement.says.clone(),
+            verdict,
+            evidence,
+        });
+    }
+    Ok(outcome)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Quantity, Statement, meets};
+
+    fn statement(above: Option<f64>, below: Option<f64>, within: Option<f64>) -> Statement {
+        Statement {
+            says: String::new(),
+            name: String::new(),
+            quantity: Quantity::A0,
+            at: None,
+            above,
+            below,
+            as_first_within: within,
+        }
+    }
+
+    #[test]
+    fn what_an_error_leaves_open_is_open() {
+        let above = statement(Some(1.0), None, None);
+        assert_eq!(meets(&above, None, (1.5, 0.1)), Some(true));
+        assert_eq!(meets(&above, None, (0.5, 0.1)), Some(false));
+        assert_eq!(meets(&above, None, (1.05, 0.1)), None);
+        let band = statement(Some(0.0), Some(1.0), None);
+        assert_eq!(meets(&band, None, (0.5, 0.1)), Some(true));
+        assert_eq!(meets(&band, None, (2.0, 0.1)), Some(false));
+        let same = statement(None, None, Some(0.01));
+        assert_eq!(meets(&same, Some((2.0, 0.0)), (2.01, 1e-3)), Some(true));
+        assert_eq!(meets(&same, Some((2.0, 0.0)), (2.1, 1e-3)), Some(false));
+    }
+}
