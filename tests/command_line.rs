@@ -282,3 +282,31 @@ boundary { at y = 0 { u = 0; } at y = 1 { u = 0; } }
         );
     }
 }
+
+/// Every key of every JSON object stands in the page that lists them.
+#[test]
+fn the_page_of_keys_is_whole() {
+    let page = std::fs::read_to_string(root().join("spec/data.md")).expect("the page");
+    let commands = [
+        "base vibrated_bed --points 3",
+        "spectrum swift_hohenberg",
+        "point swift_hohenberg --order 5",
+        "point brusselator --k 1 --set B=7 --set D1=1",
+        "amplitudes swift_hohenberg --mode k=1",
+        "critical swift_hohenberg --vary r --from -0.1 --to 0.1 --k 1",
+        "verify swift_hohenberg",
+    ];
+    for command in commands {
+        let name = command.split(' ').next().expect("a command");
+        let row = page
+            .lines()
+            .find(|l| l.starts_with(&format!("| `{name}` |")));
+        let row = row.unwrap_or_else(|| panic!("{name} is not in the page"));
+        let found = json(command);
+        for key in found.as_object().expect("an object").keys() {
+            // Coefficients beyond c2 and the coordinate have names of their own.
+            let known = row.contains(&format!("`{key}`")) || key == "y";
+            assert!(known, "{name}: `{key}` is not in the page");
+        }
+    }
+}

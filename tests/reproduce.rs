@@ -353,3 +353,73 @@ fn formulas_in_latex() {
     let balanced = |line: &str| line.matches('{').count() == line.matches('}').count();
     assert!(printed.lines().all(balanced));
 }
+
+/// Modes as pictures and data: X[1;1] has the norm that the spec asks for, a mean mode is real, walls hold.
+#[test]
+fn modes_are_drawn_and_stored() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let (svg, npz) = (path("modes.svg"), path("modes.npz"));
+    run(&[
+        "point",
+        "rayleigh_benard",
+        "--k",
+        "3.1",
+        "--set",
+        "Ra=1800",
+        "-M",
+        "30",
+        "--plot",
+        &svg,
+        "--out",
+        &npz,
+    ]);
+    assert!(
+        fs::read_to_string(&svg)
+            .expect("a picture")
+            .contains("X[3;3]")
+    );
+    let mut archive = npyz::npz::NpzArchive::open(&npz).expect("an archive");
+    let mut array = |name: &str| -> Vec<f64> {
+        let found = archive.by_name(name).expect("readable").expect(name);
+        found.into_vec().expect("numbers")
+    };
+    let theta = array("X11_theta_re");
+    close("theta at mid-height", theta[100], 1.0, 1e-9);
+    close("theta at the wall", theta[0], 0.0, 1e-12);
+    assert!(array("X02_theta_im").iter().all(|v| *v == 0.0));
+    assert_eq!(array("adjoint_heat_re").len(), 201);
+    let spectrum = path("spectrum.svg");
+    run(&["spectrum", "rayleigh_benard", "--plot", &spectrum]);
+    assert!(
+        fs::read_to_string(&spectrum)
+            .expect("a picture")
+            .contains("growth rate")
+    );
+    let base = path("base.svg");
+    run(&["base", "vibrated_bed", "--points", "3", "--plot", &base]);
+    assert!(
+        fs::read_to_string(&base)
+            .expect("a picture")
+            .contains("base state")
+    );
+    let lines = path("pattern.svg");
+    run(&[
+        "pattern",
+        "swift_hohenberg",
+        "--set",
+        "b=0.5",
+        "--out",
+        &lines,
+    ]);
+    assert!(
+        fs::read_to_string(&lines)
+            .expect("a picture")
+            .contains("through third order")
+    );
+    let refused = landau(&["point", "swift_hohenberg", "--plot", &svg]);
+    assert_eq!(refused.status, 2, "{}", refused.err);
+    let refused = landau(&["base", "vibrated_bed", "--plot", &npz]);
+    assert_eq!(refused.status, 2, "{}", refused.err);
+    assert!(refused.err.contains("it accepts .svg"), "{}", refused.err);
+}

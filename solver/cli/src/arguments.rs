@@ -41,30 +41,40 @@ pub enum Command {
         against: Option<PathBuf>,
     },
     /// Solve for the base state and print its profiles.
-    #[command(after_help = "Example: landau base my.model --set S=400 --set H=auto --points 21")]
+    #[command(
+        after_help = "Examples:\n  landau base my.model --set S=400 --set H=auto --points 21\n  landau base my.model --plot base.svg"
+    )]
     Base {
         /// A built model, or the path of a .model file.
         model: String,
         /// Number of heights to print, evenly spaced.
         #[arg(long, default_value_t = 41)]
         points: usize,
+        /// A picture.
+        #[arg(long, value_name = "FILE.svg")]
+        plot: Option<PathBuf>,
         #[command(flatten)]
         common: Common,
     },
     /// Direct and adjoint eigenvalues at one wavenumber.
-    #[command(after_help = "Example: landau spectrum my.model --k 0.16 -M 100")]
+    #[command(
+        after_help = "Examples:\n  landau spectrum my.model --k 0.16 -M 100\n  landau spectrum my.model --k 0.16 --plot spectrum.svg"
+    )]
     Spectrum {
         /// A built model, or the path of a .model file.
         model: String,
         /// Wavenumber; the model's typical one by default.
         #[arg(long, allow_negative_numbers = true)]
         k: Option<f64>,
+        /// The eigenvalues of L and L† in the complex plane.
+        #[arg(long, value_name = "FILE.svg")]
+        plot: Option<PathBuf>,
         #[command(flatten)]
         common: Common,
     },
     /// Landau coefficients, kind of bifurcation, amplitude, error, resonances at one wavenumber.
     #[command(
-        after_help = "Example: landau point my.model --k 0.16\n         landau point my.model --k 1 --set r=0.1 --json\n         landau point my.model --k 0.16 --order 7"
+        after_help = "Example: landau point my.model --k 0.16\n         landau point my.model --k 1 --set r=0.1 --json\n         landau point my.model --k 0.16 --order 7\n         landau point my.model --k 0.16 --plot modes.svg --out modes.npz"
     )]
     Point {
         /// A built model, or the path of a .model file.
@@ -75,6 +85,12 @@ pub enum Command {
         /// Order of the expansion: 3 gives c2, 5 c4, and so on.
         #[arg(long, default_value_t = 3)]
         order: usize,
+        /// The modes of the expansion and the adjoint mode as profiles.
+        #[arg(long, value_name = "FILE.svg")]
+        plot: Option<PathBuf>,
+        /// The same as data (repeatable): .npz or .nc.
+        #[arg(long, value_name = "FILE")]
+        out: Vec<PathBuf>,
         #[command(flatten)]
         common: Common,
     },
@@ -236,7 +252,7 @@ pub struct PatternOptions {
     /// The field that is shaded; the first by default.
     #[arg(long, value_name = "FIELD")]
     pub shade: Option<String>,
-    /// The fields that are drawn as arrows; u with v or w by default.
+    /// The fields that are drawn as arrows, along and across; none by default.
     #[arg(long, value_name = "FIELD,FIELD")]
     pub arrows: Option<String>,
     /// Where it goes (repeatable): .svg is a picture, .npz, .nc and .vtk are data.

@@ -66,19 +66,28 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
         Command::Base {
             model,
             points,
+            plot,
             common,
         } => with_setup(library, &model, &common, |setup| {
-            solve::base(setup, points, &common)
+            solve::base(setup, points, plot.as_deref(), &common)
         }),
-        Command::Spectrum { model, k, common } => with_setup(library, &model, &common, |setup| {
-            solve::spectrum(setup, k, &common)
+        Command::Spectrum {
+            model,
+            k,
+            plot,
+            common,
+        } => with_setup(library, &model, &common, |setup| {
+            solve::spectrum(setup, k, plot.as_deref(), &common)
         }),
         Command::Point {
             model,
             k,
             order,
+            plot,
+            out,
             common,
         } => with_setup(library, &model, &common, |setup| {
+            picture::modes(setup, k, plot.as_deref(), &out, &common)?;
             solve::point(setup, k, order, &common)
         }),
         Command::Amplitudes {

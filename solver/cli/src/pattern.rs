@@ -4,7 +4,7 @@ use crate::arguments::{Common, PatternOptions};
 use crate::solve::asked;
 use landau_report::data::FORMATS;
 use landau_report::data::plane::{attributes, dataset};
-use landau_report::figure::pattern_pair;
+use landau_report::figure::{pattern_lines, pattern_pair};
 use landau_solver::error::{Error, Result};
 use landau_solver::file::write_whole;
 use landau_solver::study::{Setup, check_wavenumber};
@@ -43,7 +43,7 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
             }
         };
         let found = expand(point, amplitude, window)?;
-        let attributes = attributes(setup, &state.parameters, k, amplitude);
+        let attributes = attributes(setup, &state.parameters, k, Some(amplitude));
         for path in &options.out {
             if path.extension().is_some_and(|e| e == "svg") {
                 write_whole(path, picture(setup, options, &found)?.as_bytes())?;
@@ -110,9 +110,8 @@ fn picture(setup: &Setup, options: &PatternOptions, found: &Pattern) -> Result<S
         })
     };
     if found.y.len() < 2 {
-        return Err(Error::input(
-            "a model without a cross-stream coordinate has no plane to draw: write .npz or .nc",
-        ));
+        let drawn = pattern_lines(setup.model.structure(), found);
+        return drawn.ok_or_else(|| Error::computation("the pattern has no finite value"));
     }
     let shade = options.shade.as_deref().map_or(Ok(0), field)?;
     let arrows = match &options.arrows {
@@ -122,13 +121,7 @@ fn picture(setup: &Setup, options: &PatternOptions, found: &Pattern) -> Result<S
                 .ok_or_else(|| Error::input(format!("--arrows {text}: it accepts FIELD,FIELD")))?;
             Some([field(along.trim())?, field(across.trim())?])
         }
-        None => velocity(found),
+        None => None,
     };
     Ok(pattern_pair(setup.model.structure(), found, shade, arrows))
-}
-
-/// The fields that are a velocity by their customary names.
-fn velocity(found: &Pattern) -> Option<[usize; 2]> {
-    let across = found.field("v").or_else(|| found.field("w"))?;
-    Some([found.field("u")?, across])
 }

@@ -1,9 +1,71 @@
-//! Tables and plots of a sweep.
+//! Pictures of answers, and what is stored beside them; the table of a sweep.
 
+use crate::arguments::Common;
+use crate::solve::asked;
+use landau_report::data::plane::{attributes, modes as dataset};
+use landau_report::figure;
 use landau_report::figure::{Panel, Style, panels};
+use landau_solver::error::{Error, Result};
+use landau_solver::file::write_whole;
 use landau_solver::study::Setup;
+use landau_solver::study::modes::Modes;
 use landau_solver::study::row::{Column, Row, column};
 use landau_solver::study::sweep::Sweep;
+use std::path::{Path, PathBuf};
+
+/// Writes a picture where one is asked for.
+///
+/// # Errors
+/// A path that is no .svg or cannot be written; an answer that has nothing to draw.
+pub fn drawn(path: Option<&Path>, draw: impl FnOnce() -> Option<String>) -> Result<()> {
+    let Some(path) = path else { return Ok(()) };
+    if path.extension().is_none_or(|e| e != "svg") {
+        return Err(Error::input(format!(
+            "--plot {}: it accepts .svg",
+            path.display()
+        )));
+    }
+    let drawn = draw().ok_or_else(|| {
+        Error::input(format!(
+            "--plot {}: there is no profile to draw, for the model has no cross-stream coordinate",
+            path.display()
+        ))
+    })?;
+    write_whole(path, drawn.as_bytes())
+}
+
+/// The modes at a wavenumber, drawn and stored where that is asked for.
+///
+/// # Errors
+/// As [`drawn`], and a file that is no .npz or .nc.
+pub fn modes(
+    setup: &Setup,
+    k: Option<f64>,
+    plot: Option<&Path>,
+    out: &[PathBuf],
+    common: &Common,
+) -> Result<()> {
+    if plot.is_none() && out.is_empty() {
+        return Ok(());
+    }
+    for path in out {
+        if path.extension().is_none_or(|e| e != "npz" && e != "nc") {
+            return Err(Error::input(format!(
+                "--out {}: it accepts .npz, .nc",
+                path.display()
+            )));
+        }
+    }
+    let (k, selection) = asked(setup, k, common)?;
+    let found = Modes::compute(setup, k, selection)?;
+    drawn(plot, || figure::modes(setup.model.structure(), &found))?;
+    let state = setup.base(None)?;
+    for path in out {
+        let facts = attributes(setup, &state.parameters, k, None);
+        dataset(setup, &found, facts).write(path)?;
+    }
+    Ok(())
+}
 
 /// Rows shown of a long table.
 const SHOWN: usize = 24;
@@ -37,6 +99,12 @@ pub fn sweep(setup: &Setup, sweep: &Sweep, rows: &[Row]) -> Option<String> {
         growth.curve(&label, Style::Line, column(line, Column::A0));
         landau.curve_with_poles(&label, Style::Line, column(line, Column::A2));
         amplitude.curve_with_poles(&label, Style::Line, column(line, Column::Amplitude));
+        // The unstable branch of a subcritical bifurcation.
+        let threshold = column(line, Column::Threshold);
+        if threshold.iter().any(|p| p.1.is_finite()) {
+            let label = format!("{label} threshold").trim().to_owned();
+            amplitude.curve_with_poles(&label, Style::Dashed, threshold);
+        }
     }
     panels(&setup.model.structure().title, &[growth, landau, amplitude])
 }

@@ -3,6 +3,7 @@
 use crate::arguments::{Common, CriticalOptions, Of, SweepOptions, range};
 use crate::progress::Bar;
 use crate::{interrupt, picture};
+use landau_report::figure;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{destination, write_whole};
 use landau_solver::model::C64;
@@ -17,6 +18,7 @@ use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticalit
 use landau_solver::weakly::Selection;
 use landau_solver::words;
 use serde_json::{Map, json};
+use std::path::Path;
 
 /// The wavenumber and the mode that are asked for, or those that the model calls typical.
 ///
@@ -42,13 +44,14 @@ pub fn asked(setup: &Setup, k: Option<f64>, common: &Common) -> Result<(f64, Sel
     Ok((k, near.map_or(Selection::Leading, Selection::Near)))
 }
 
-pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
+pub fn base(setup: &Setup, points: usize, plot: Option<&Path>, common: &Common) -> Result<()> {
     if !(2..=100_000).contains(&points) {
         return Err(Error::input(format!(
             "--points {points} is out of range: it accepts 2 to 100000"
         )));
     }
     let state = setup.base(None)?;
+    picture::drawn(plot, || figure::base(setup, &state))?;
     let structure = setup.model.structure();
     let coordinate = structure.coordinate.clone().unwrap_or_else(|| "y".into());
     let count = if structure.coordinate.is_some() {
@@ -111,9 +114,10 @@ pub fn base(setup: &Setup, points: usize, common: &Common) -> Result<()> {
     Ok(())
 }
 
-pub fn spectrum(setup: &Setup, k: Option<f64>, common: &Common) -> Result<()> {
+pub fn spectrum(setup: &Setup, k: Option<f64>, plot: Option<&Path>, common: &Common) -> Result<()> {
     let (k, _) = asked(setup, k, common)?;
     let found = SpectrumReport::compute(setup, k)?;
+    picture::drawn(plot, || figure::spectrum(&found))?;
     if common.json {
         say!("{}", found.json());
     } else {

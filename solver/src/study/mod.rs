@@ -7,6 +7,7 @@ mod journal;
 pub use journal::journal_path;
 pub use progress::{Progress, Silent};
 pub mod minimise;
+pub mod modes;
 pub mod point;
 mod progress;
 pub mod quadrature;

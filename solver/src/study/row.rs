@@ -53,6 +53,8 @@ pub enum Column {
     A2,
     /// A_e of an unstable mode.
     Amplitude,
+    /// A_e of a stable one: a threshold.
+    Threshold,
 }
 
 /// One column over the first axis; NaN where there is no value.
@@ -61,6 +63,7 @@ pub fn column(rows: &[Row], column: Column) -> Vec<(f64, f64)> {
         Column::A0 => row.c0.map(|c| c[0]),
         Column::A2 => row.c2.map(|c| c[0]),
         Column::Amplitude => row.amplitude.filter(|_| row.c0.is_some_and(|c| c[0] > 0.0)),
+        Column::Threshold => row.amplitude.filter(|_| row.c0.is_some_and(|c| c[0] < 0.0)),
     };
     let point = |row: &Row| (row.coordinates[0], value(row).unwrap_or(f64::NAN));
     rows.iter().map(point).collect()

@@ -1,16 +1,21 @@
 //! A pattern as arrays over (y, x), with what it was computed from.
 
 use super::{Array, Dataset};
+use landau_solver::model::C64;
 use landau_solver::parameters::Parameters;
 use landau_solver::study::Setup;
+use landau_solver::study::modes::Modes;
 use landau_solver::weakly::Pattern;
+
+/// Real or imaginary part.
+type Side = fn(&C64) -> f64;
 
 /// What the numbers were computed from.
 pub fn attributes(
     setup: &Setup,
     parameters: &Parameters,
     k: f64,
-    amplitude: f64,
+    amplitude: Option<f64>,
 ) -> Vec<(String, String)> {
     let structure = setup.model.structure();
     let mut list = vec![
@@ -26,13 +31,44 @@ pub fn attributes(
         .collect();
     list.push(("parameters".to_owned(), values.join(" ")));
     list.push(("k".to_owned(), k.to_string()));
-    list.push(("amplitude".to_owned(), amplitude.to_string()));
+    if let Some(amplitude) = amplitude {
+        list.push(("amplitude".to_owned(), amplitude.to_string()));
+    }
     list.push(("resolution".to_owned(), setup.resolution.to_string()));
     let normalisation = structure.amplitude.description.clone();
     list.push(("normalization".to_owned(), normalisation));
     let version = env!("CARGO_PKG_VERSION").to_owned();
     list.push(("landau_version".to_owned(), version));
     list
+}
+
+/// Real and imaginary part of every mode over the cross-stream coordinate.
+pub fn modes(setup: &Setup, found: &Modes, attributes: Vec<(String, String)>) -> Dataset {
+    let vertical = setup.model.structure().coordinate.as_deref().unwrap_or("y");
+    let mut arrays = Vec::new();
+    for profile in &found.profiles {
+        // Names that other programs take for names: X13 for X[1;3].
+        let plain = |c: &char| c.is_ascii_alphanumeric();
+        let name = match profile.name.as_str() {
+            "X†" => "adjoint".to_owned(),
+            name => name.chars().filter(plain).collect::<String>(),
+        };
+        for (part, values) in profile.parts.iter().zip(&profile.values) {
+            let sides: [(&str, Side); 2] = [("re", |v| v.re), ("im", |v| v.im)];
+            for (side, of) in sides {
+                arrays.push(Array {
+                    name: format!("{name}_{part}_{side}"),
+                    axes: vec![0],
+                    values: values.iter().map(of).collect(),
+                });
+            }
+        }
+    }
+    Dataset {
+        attributes,
+        axes: vec![(vertical.to_owned(), found.heights.clone())],
+        arrays,
+    }
 }
 
 /// X⁰, P (4.5) and P (4.4) of every field over (y, x).

@@ -2,11 +2,13 @@
 
 mod compact;
 mod curves;
+mod modes;
 mod pattern;
 mod plane;
 
 pub use curves::{Curve, Panel, Style, panels};
-pub use pattern::pattern_pair;
+pub use modes::{base, modes, spectrum};
+pub use pattern::{pattern_lines, pattern_pair};
 pub use plane::{Plane, planes};
 
 /// Colours that remain apart for colour-blind readers (Okabe & Ito), the darkest first.

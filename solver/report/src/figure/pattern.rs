@@ -1,6 +1,6 @@
 //! A pattern: the fundamental alone beside the expansion through third order.
 
-use super::{Plane, planes};
+use super::{Panel, Plane, Style, panels, planes};
 use landau_solver::model::Structure;
 use landau_solver::weakly::Pattern;
 
@@ -21,6 +21,25 @@ pub fn pattern_pair(
             panel("fundamental alone", &found.linear),
             panel("through third order", &found.nonlinear),
         ],
+    )
+}
+
+/// The same along the periodic coordinate alone, one panel a field.
+pub fn pattern_lines(structure: &Structure, found: &Pattern) -> Option<String> {
+    let panel = |(field, name): (usize, &String)| {
+        let mut panel = Panel::new(name, &structure.periodic, name);
+        let curve = |values: &[Vec<Vec<f64>>]| {
+            let values = values[field].iter().flatten().copied();
+            found.x.iter().copied().zip(values).collect()
+        };
+        panel.curve("through third order", Style::Line, curve(&found.nonlinear));
+        panel.curve("fundamental alone", Style::Dashed, curve(&found.linear));
+        panel
+    };
+    let drawn: Vec<Panel> = found.names.iter().enumerate().map(panel).collect();
+    panels(
+        &format!("{}, A = {:.4}", structure.title, found.amplitude),
+        &drawn,
     )
 }
 

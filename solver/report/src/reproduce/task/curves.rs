@@ -44,6 +44,7 @@ pub(super) fn sweep(
         Column::A0 => ("growth rate", "a0"),
         Column::A2 => ("first Landau coefficient", "a2"),
         Column::Amplitude => ("equilibrium amplitude", "A_e"),
+        Column::Threshold => ("threshold amplitude", "A_e"),
     };
     let mut drawn: Vec<Panel> = columns
         .iter()
@@ -69,7 +70,7 @@ pub(super) fn sweep(
             let points = column(rows, *quantity);
             match quantity {
                 Column::A0 => panel.curve(label, Style::Line, points),
-                Column::A2 | Column::Amplitude => {
+                Column::A2 | Column::Amplitude | Column::Threshold => {
                     panel.curve_with_poles(label, Style::Line, points);
                 }
             }

@@ -61,7 +61,7 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
                 .transpose()?;
             let svg = pattern_pair(setup.model.structure(), &found, shade, arrows);
             let parameters = &setup.base(None)?.parameters;
-            let facts = attributes(setup, parameters, k, found.amplitude);
+            let facts = attributes(setup, parameters, k, Some(found.amplitude));
             let data = dataset(setup, &found, facts);
             Ok((svg, found.amplitude, data))
         })

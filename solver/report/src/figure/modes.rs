@@ -1,0 +1,82 @@
+//! Modes over the cross-stream coordinate, spectra in the complex plane, base states.
+
+use super::{Panel, Style, panels};
+use landau_solver::base::BaseState;
+use landau_solver::model::{C64, Structure};
+use landau_solver::study::Setup;
+use landau_solver::study::modes::{ModeProfile, Modes};
+use landau_solver::study::spectrum::SpectrumReport;
+
+/// Below this part of the largest value of a mode a part counts as zero.
+const NOTHING: f64 = 1e-9;
+/// Points of a base profile.
+const POINTS: usize = 401;
+/// How far beyond the slowest eigenvalues a spectrum is drawn.
+const REACH: f64 = 12.0;
+
+/// Real or imaginary part.
+type Side = fn(&C64) -> f64;
+
+/// One panel a mode: real parts as lines, imaginary parts dashed.
+pub fn modes(structure: &Structure, found: &Modes) -> Option<String> {
+    let vertical = structure.coordinate.as_deref()?;
+    let panel = |profile: &ModeProfile| {
+        let mut panel = Panel::new(&profile.name, vertical, "");
+        let sizes = profile.values.iter().flatten().map(|v| v.norm());
+        let largest = sizes.fold(0.0, f64::max);
+        for (part, values) in profile.parts.iter().zip(&profile.values) {
+            let sides: [(&str, Style, Side); 2] =
+                [("", Style::Line, |v| v.re), ("i ", Style::Dashed, |v| v.im)];
+            for (unit, style, of) in sides {
+                if values.iter().any(|v| of(v).abs() > NOTHING * largest) {
+                    let points = found.heights.iter().copied().zip(values.iter().map(of));
+                    panel.curve(&format!("{unit}{part}"), style, points.collect());
+                }
+            }
+        }
+        panel
+    };
+    let drawn: Vec<Panel> = found.profiles.iter().map(panel).collect();
+    panels(&format!("{}, k = {}", structure.title, found.k), &drawn)
+}
+
+/// The slow eigenvalues of L and L† in the complex plane.
+pub fn spectrum(found: &SpectrumReport) -> Option<String> {
+    let reach = REACH * found.direct.scale();
+    let shown = |c: &&C64| reach == 0.0 || c.norm() <= reach;
+    let mut panel = Panel::new(
+        &format!("{}, k = {}", found.title, found.k),
+        "growth rate",
+        "frequency",
+    );
+    let direct = found.direct.values.iter().filter(shown);
+    panel.curve("L", Style::Dots, direct.map(|c| (c.re, c.im)).collect());
+    if let Ok(adjoint) = &found.adjoint {
+        let conjugate = adjoint.values.iter().filter(shown).map(|c| (c.re, -c.im));
+        panel.curve("L†, conjugate", Style::Dots, conjugate.collect());
+    }
+    panels("", &[panel])
+}
+
+/// One panel a field.
+pub fn base(setup: &Setup, state: &BaseState) -> Option<String> {
+    let structure = setup.model.structure();
+    let vertical = structure.coordinate.as_deref()?;
+    let places = (0..POINTS).map(|i| -1.0 + 2.0 * i as f64 / (POINTS - 1) as f64);
+    let points: Vec<Vec<f64>> = places.map(|xi| state.point(setup.model, xi, 0.0)).collect();
+    let profiles = structure
+        .fields
+        .iter()
+        .enumerate()
+        .filter(|(_, f)| !f.uniform);
+    let panel = |(field, info): (usize, &landau_solver::model::FieldInfo)| {
+        let position = structure.base_position(field, 0);
+        let place = structure.state().coordinate();
+        let mut panel = Panel::new(&info.name, vertical, &info.name);
+        let curve = points.iter().map(|p| (p[place], p[position])).collect();
+        panel.curve("", Style::Line, curve);
+        panel
+    };
+    let drawn: Vec<Panel> = profiles.map(panel).collect();
+    panels(&format!("{}: base state", structure.title), &drawn)
+}
