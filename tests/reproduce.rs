@@ -423,3 +423,46 @@ fn modes_are_drawn_and_stored() {
     assert_eq!(refused.status, 2, "{}", refused.err);
     assert!(refused.err.contains("it accepts .svg"), "{}", refused.err);
 }
+
+/// The page about study files holds one that runs as it says, and names every kind of task.
+#[test]
+fn the_page_about_studies_holds_one() {
+    let page =
+        fs::read_to_string(crate::support::root().join("spec/STUDIES.md")).expect("the page");
+    let (_, rest) = page.split_once("```toml\n").expect("an example");
+    let (study, _) = rest.split_once("```").expect("its end");
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, out) = (
+        folder.path().join("study.toml"),
+        folder.path().join("report"),
+    );
+    fs::write(&file, study).expect("written");
+    let paths = [&file, &out].map(|p| p.to_str().expect("a path"));
+    let answer = landau(&["reproduce", paths[0], "--out", paths[1]]);
+    assert_eq!(answer.status, 3, "{}", answer.err);
+    assert!(answer.err.contains("free: Ra_c"), "{}", answer.err);
+    let read = |name: &str| -> Value {
+        let text = fs::read_to_string(out.join(name)).expect(name);
+        serde_json::from_str(&text).expect("JSON")
+    };
+    let numbers = read("numbers.json");
+    close(
+        "Ra_c",
+        numbers[0]["ours"].as_f64().expect("Ra_c"),
+        1707.762,
+        5e-4,
+    );
+    assert_eq!(numbers[1]["printed"], 657.511);
+    assert_eq!(read("claims.json")[0]["verdict"], "holds");
+    // A kind that the page forgets would be named by the error of one that is not known.
+    fs::write(&file, study.replace("\"sweep\"", "\"swoop\"")).expect("written");
+    let error = landau(&["reproduce", paths[0], "--out", paths[1]]).err;
+    let kinds: Vec<&str> = error.split('`').skip(3).step_by(2).collect();
+    assert!(kinds.len() >= 12, "{error}");
+    for kind in kinds {
+        assert!(
+            page.contains(&format!("| `{kind}` |")),
+            "{kind} is not in the page"
+        );
+    }
+}
