@@ -4,7 +4,8 @@
 pub trait Progress: Sync {
     /// Steps in all.
     fn begin(&self, steps: usize);
-    /// Steps done since.
+    /// Steps done since; none at the start of a longer stretch. It may unwind to end the work, which leaves files
+    /// and journals as they are after any interruption.
     fn advance(&self, steps: usize);
     /// There is no more to do.
     fn end(&self);

@@ -157,6 +157,8 @@ impl Sweep<'_, '_> {
                     progress.advance(rows.len());
                     return rows.clone();
                 }
+                // Whoever wants to stop can do so here.
+                progress.advance(0);
                 let rows = self.chunk(chunk, progress);
                 record(chunk, &rows);
                 rows

@@ -1,0 +1,263 @@
+"""Models: what is asked of them, and the derived operators."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ._core import Core, InputError
+from .results import (
+    Amplitudes,
+    Base,
+    Certificate,
+    Critical,
+    Modes,
+    Pattern,
+    Point,
+    Spectrum,
+    Sweep,
+)
+
+Value = float | int | str
+
+
+def built() -> list[str]:
+    """Names of the models that are built in."""
+    return Core.built()
+
+
+def _near(near: complex | None) -> tuple[float, float] | None:
+    return None if near is None else (complex(near).real, complex(near).imag)
+
+
+def _is_axis(value: Any) -> bool:
+    return not isinstance(value, str) and np.ndim(value) == 1
+
+
+class Operators:
+    """The derived operators `base`, `L`, `adjoint` (with its boundary conditions), `N2`, `N3`."""
+
+    names = ("base", "L", "adjoint", "N2", "N3")
+
+    def __init__(self, core: Core) -> None:
+        self._core = core
+
+    def text(self, name: str) -> str:
+        """Plain text, as `landau explain` prints it."""
+        return "\n".join(self._core.operator(name, False))
+
+    def latex(self, name: str) -> list[str]:
+        """One formula a row."""
+        return self._core.operator(name, True)
+
+    def _repr_latex_(self) -> str:
+        return "\n".join(rf"$$ {row} $$" for row in self.latex("L"))
+
+
+class Model:
+    """A model: built in by name, or the spec of a `.model` file, run from its tape.
+
+    Every method takes the model's parameters as keywords (numbers, names of choices, or "auto") and `M`, the Chebyshev
+    resolution; `set` takes those whose names are options. Units are the model's.
+    """
+
+    def __init__(self, name: str | os.PathLike[str]) -> None:
+        self._adopt(Core.open(os.fspath(name)))
+
+    @classmethod
+    def from_text(cls, text: str, laws: Mapping[str, str] | None = None) -> Model:
+        """A spec from its text; `laws` by name, besides those that are built in."""
+        model = cls.__new__(cls)
+        model._adopt(Core.from_text(text, dict(laws or {})))
+        return model
+
+    def _adopt(self, core: Core) -> None:
+        self._core = core
+        info = json.loads(core.info())
+        self.name: str = info["name"]
+        self.title: str = info["title"]
+        #: By name: default, doc, choices, and whether "auto" is accepted.
+        self.parameters: dict[str, dict[str, Any]] = info["parameters"]
+        #: Documentation by name.
+        self.fields: dict[str, str] = info["fields"]
+        #: What A = 1 means.
+        self.normalization: str = info["normalization"]
+        self.coordinate: str | None = info["coordinate"]
+        self.periodic: str = info["periodic"]
+        self._typical = info["typical_k"], info["typical_near"]
+        self.operators = Operators(core)
+
+    @property
+    def text(self) -> str:
+        """The spec."""
+        return self._core.texts()[0]
+
+    @property
+    def laws(self) -> dict[str, str]:
+        """Texts of the law files at hand, by name."""
+        return self._core.texts()[1]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, self._core.texts()
+
+    def __repr__(self) -> str:
+        return f"<Model {self.name}: {self.title}>"
+
+    # What is asked of it
+
+    def base(self, *, points: int = 201, M: int = 50, set: Mapping[str, Value] | None = None, **parameters: Value) -> Base:
+        """The base state at `points` evenly spaced heights."""
+        return Base(self, json.loads(self._core.base(self._set(set, parameters), M, points)))
+
+    def spectrum(
+        self, k: float | None = None, *, M: int = 50, set: Mapping[str, Value] | None = None, **parameters: Value
+    ) -> Spectrum:
+        """Eigenvalues of L and of the separately discretised L†, by decreasing growth rate."""
+        return Spectrum(self, json.loads(self._core.spectrum(self._set(set, parameters), M, self._k(k))))
+
+    def point(
+        self,
+        k: float | None = None,
+        *,
+        order: int = 3,
+        near: complex | None = None,
+        M: int = 50,
+        set: Mapping[str, Value] | None = None,
+        **parameters: Value,
+    ) -> Point:
+        """Landau coefficients to an odd order, with errors and everything that they rest on."""
+        k, near = self._mode(k, near)
+        found = self._core.point(self._set(set, parameters), M, k, _near(near), order)
+        return Point(self, json.loads(found))
+
+    def modes(
+        self,
+        k: float | None = None,
+        *,
+        near: complex | None = None,
+        M: int = 50,
+        set: Mapping[str, Value] | None = None,
+        **parameters: Value,
+    ) -> Modes:
+        """X[1;1], X[0;2], X[2;2], X[1;3], X[3;3] and X† as profiles."""
+        k, near = self._mode(k, near)
+        return Modes(self, json.loads(self._core.modes(self._set(set, parameters), M, k, _near(near))))
+
+    def amplitudes(
+        self,
+        modes: Iterable[float | tuple[float, complex]],
+        *,
+        order: int = 3,
+        M: int = 50,
+        set: Mapping[str, Value] | None = None,
+        **parameters: Value,
+    ) -> Amplitudes:
+        """Amplitude equations of several modes, each a wavenumber or (wavenumber, nearby eigenvalue)."""
+        chosen = [
+            (float(mode[0]), _near(mode[1])) if isinstance(mode, tuple) else (float(mode), None) for mode in modes
+        ]
+        return Amplitudes(self, json.loads(self._core.amplitudes(self._set(set, parameters), M, chosen, order)))
+
+    def critical(
+        self,
+        vary: str,
+        between: tuple[float, float],
+        *,
+        of: str = "growth",
+        k: float | None = None,
+        minimize: tuple[float, float] | None = None,
+        near: complex | None = None,
+        M: int = 50,
+        set: Mapping[str, Value] | None = None,
+        **parameters: Value,
+    ) -> Critical:
+        """Where growth or c2 changes sign, or c2 jumps through infinity; `minimize` over a range of k."""
+        found = self._core.critical(self._set(set, parameters), M, vary, between, of, k, minimize, _near(near))
+        return Critical(self, json.loads(found))
+
+    def sweep(
+        self,
+        *,
+        out: str | os.PathLike[str] | None = None,
+        k: float | Sequence[float] | None = None,
+        near: complex | None = None,
+        M: int = 50,
+        set: Mapping[str, Any] | None = None,
+        **parameters: Any,
+    ) -> Sweep:
+        """Landau points over the product of all keywords that are sequences; the first one is followed.
+
+        With `out`, a CSV file, an interrupted sweep leaves a journal beside it and goes on from there.
+        """
+        every = {**(set or {}), **parameters}
+        axes = [(name, [float(x) for x in value]) for name, value in every.items() if _is_axis(value)]
+        fixed = {name: value for name, value in every.items() if not _is_axis(value)}
+        number = k
+        if k is not None and _is_axis(k):
+            axes.insert(0, ("k", [float(x) for x in k]))
+            number = None
+        if not axes:
+            raise InputError("nothing varies: give k or a parameter as a sequence")
+        target = None if out is None else os.fspath(out)
+        found = self._core.sweep(self._set(None, fixed), M, axes, number, _near(near), target)
+        return Sweep(self, axes, json.loads(found))
+
+    def verify(
+        self,
+        k: float | None = None,
+        *,
+        order: int = 3,
+        near: complex | None = None,
+        M: int = 50,
+        set: Mapping[str, Value] | None = None,
+        **parameters: Value,
+    ) -> Certificate:
+        """The certificate at one wavenumber."""
+        k, near = self._mode(k, near)
+        found = self._core.verify(self._set(set, parameters), M, k, _near(near), order)
+        return Certificate(self, json.loads(found))
+
+    def pattern(
+        self,
+        k: float | None = None,
+        *,
+        amplitude: float | None = None,
+        points: tuple[int, int] = (161, 81),
+        wavelengths: float = 2.0,
+        near: complex | None = None,
+        M: int = 50,
+        set: Mapping[str, Value] | None = None,
+        **parameters: Value,
+    ) -> Pattern:
+        """The fields over the plane: base, fundamental alone, through third order."""
+        k, near = self._mode(k, near)
+        given = self._set(set, parameters)
+        found = self._core.pattern(given, M, k, _near(near), amplitude, points, wavelengths)
+        return Pattern(self, json.loads(found))
+
+    def _set(self, extra: Mapping[str, Value] | None, parameters: Mapping[str, Value]) -> list[str]:
+        def shown(value: Value) -> str:
+            return value if isinstance(value, str) else repr(float(value))
+
+        return [f"{name}={shown(value)}" for name, value in {**(extra or {}), **parameters}.items()]
+
+    def _k(self, k: float | None) -> float:
+        if k is not None:
+            return float(k)
+        if self._typical[0] is None:
+            raise InputError(f"give the wavenumber k: the model `{self.name}` names no typical one")
+        return self._typical[0]
+
+    def _mode(self, k: float | None, near: complex | None) -> tuple[float, complex | None]:
+        own = self._typical[1]
+        if k is None and near is None and own:
+            near = complex(*own)
+        return self._k(k), near
+
+
+def _restored(text: str, laws: dict[str, str]) -> Model:
+    return Model.from_text(text, laws)

@@ -1,0 +1,205 @@
+//! A model that Python holds: built in, or run from the tape of its text.
+
+use crate::raised;
+use landau_codegen::diagnostic::SourceFile;
+use landau_codegen::emit::text::{self, Section, Typeset};
+use landau_codegen::{Sources, generate, tape};
+use landau_report::library::Library;
+use landau_solver::error::{Error, Result};
+use landau_solver::model::{Model, Structure};
+use pyo3::prelude::*;
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A model with its kernels.
+#[pyclass(frozen, module = "stuart_landau._core")]
+pub struct Core {
+    pub model: Arc<dyn Model>,
+    sources: Sources,
+}
+
+/// The models that are built in.
+fn library() -> Library {
+    Library {
+        models: landau_spec::models(),
+    }
+}
+
+fn taped(sources: Sources) -> Result<Core> {
+    let model = tape(&sources)
+        .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
+    Ok(Core {
+        model: Arc::new(model),
+        sources,
+    })
+}
+
+/// The sources of a built model, as it was built.
+fn sources_of(model: &dyn Model) -> Sources {
+    let file = |(path, text): (String, String)| SourceFile { path, text };
+    let stem = |path: &str| {
+        let stem = Path::new(path).file_stem().unwrap_or_default();
+        stem.to_string_lossy().into_owned()
+    };
+    let mut own = model.sources().into_iter().map(file);
+    let empty = SourceFile {
+        path: String::new(),
+        text: String::new(),
+    };
+    Sources {
+        spec: own.next().unwrap_or(empty),
+        laws: model
+            .laws()
+            .into_iter()
+            .map(|(p, t)| (stem(&p), file((p, t))))
+            .collect(),
+    }
+}
+
+fn open(name: &str) -> Result<Core> {
+    let library = library();
+    let position = library
+        .models
+        .iter()
+        .position(|m| m.structure().name == name);
+    if let Some(position) = position {
+        let mut models = library.models;
+        let model: Arc<dyn Model> = Arc::from(models.swap_remove(position));
+        return Ok(Core {
+            sources: sources_of(model.as_ref()),
+            model,
+        });
+    }
+    let path = Path::new(name);
+    if name.ends_with(".model") || path.is_file() {
+        return taped(library.sources(path)?);
+    }
+    // Names what there is.
+    library.with_model(name, |_| Err(Error::input("the model cannot be opened")))
+}
+
+fn from_text(text: String, laws: BTreeMap<String, String>) -> Result<Core> {
+    let own = |(name, text): (String, String)| {
+        let path = format!("{name}.law");
+        (name, SourceFile { path, text })
+    };
+    let mut sources = Sources {
+        spec: SourceFile {
+            path: "text.model".to_owned(),
+            text,
+        },
+        laws: laws.into_iter().map(own).collect(),
+    };
+    for (path, text) in library().models.iter().flat_map(|model| model.laws()) {
+        let stem = Path::new(&path).file_stem().unwrap_or_default();
+        let stem = stem.to_string_lossy().into_owned();
+        sources
+            .laws
+            .entry(stem)
+            .or_insert(SourceFile { path, text });
+    }
+    taped(sources)
+}
+
+/// What Python shows of a structure.
+fn info(structure: &Structure) -> serde_json::Value {
+    let parameters = structure.parameters.iter().map(|p| {
+        let default = match p.choices.get(p.default as usize) {
+            Some(choice) => json!(choice),
+            None => json!(p.default),
+        };
+        let value = json!({
+            "default": default,
+            "doc": p.doc,
+            "choices": p.choices,
+            "automatic": p.automatic,
+        });
+        (p.name.clone(), value)
+    });
+    let fields = structure
+        .fields
+        .iter()
+        .map(|f| (f.name.clone(), json!(f.doc)));
+    let typical = structure.typical.as_ref();
+    json!({
+        "name": structure.name,
+        "title": structure.title,
+        "coordinate": structure.coordinate,
+        "periodic": structure.periodic,
+        "parameters": parameters.collect::<serde_json::Map<_, _>>(),
+        "fields": fields.collect::<serde_json::Map<_, _>>(),
+        "normalization": structure.amplitude.description,
+        "typical_k": typical.map(|t| t.k),
+        "typical_near": typical.map_or(&[][..], |t| &t.near),
+    })
+}
+
+#[pymethods]
+impl Core {
+    /// A built model by name, or the spec of a file.
+    #[staticmethod]
+    fn open(py: Python<'_>, name: &str) -> PyResult<Self> {
+        py.detach(|| open(name)).map_err(raised)
+    }
+
+    /// A spec from its text; `laws` by name, besides those that are built in.
+    #[staticmethod]
+    fn from_text(py: Python<'_>, text: String, laws: BTreeMap<String, String>) -> PyResult<Self> {
+        py.detach(|| from_text(text, laws)).map_err(raised)
+    }
+
+    /// Names of the built models.
+    #[staticmethod]
+    fn built() -> Vec<String> {
+        let models = landau_spec::models();
+        models.iter().map(|m| m.structure().name.clone()).collect()
+    }
+
+    /// Name, title, parameters and fields, as JSON.
+    fn info(&self) -> String {
+        info(self.model.structure()).to_string()
+    }
+
+    /// Text of the spec, and of the laws by name: what a pickle holds.
+    fn texts(&self) -> (String, BTreeMap<String, String>) {
+        let laws = self.sources.laws.iter();
+        let laws = laws.map(|(name, file)| (name.clone(), file.text.clone()));
+        (self.sources.spec.text.clone(), laws.collect())
+    }
+
+    /// A derived operator, `base`, `L`, `adjoint`, `N2` or `N3`: lines of text, or of LaTeX.
+    fn operator(&self, py: Python<'_>, name: &str, latex: bool) -> PyResult<Vec<String>> {
+        py.detach(|| self.lines(name, latex)).map_err(raised)
+    }
+}
+
+impl Core {
+    fn lines(&self, name: &str, latex: bool) -> Result<Vec<String>> {
+        let section = match name {
+            "base" => Section::Base,
+            "L" => Section::Linear,
+            "adjoint" => Section::Adjoint,
+            "N2" => Section::Nonlinear(2),
+            "N3" => Section::Nonlinear(3),
+            _ => {
+                return Err(Error::input(format!(
+                    "there is no operator `{name}`: there are base, L, adjoint, N2, N3"
+                )));
+            }
+        };
+        let (derivation, _) =
+            generate(&self.sources).map_err(|mistakes| Error::input(mistakes.to_string()))?;
+        if !latex {
+            let text = text::print(&derivation, section).to_string();
+            return Ok(text.lines().map(str::to_owned).collect());
+        }
+        let rows = text::latex(&derivation, section).into_iter();
+        let formulas = rows.filter_map(|row| match row {
+            Typeset::Formula(formula) => Some(formula),
+            Typeset::Heading(_) | Typeset::Words(_) => None,
+        });
+        Ok(formulas.collect())
+    }
+}

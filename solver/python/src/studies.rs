@@ -1,0 +1,357 @@
+//! What is asked of a model: the same calls as the command line's, and its JSON.
+
+use crate::model::Core;
+use crate::watch::watched;
+use landau_solver::error::{Error, Result};
+use landau_solver::model::C64;
+use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
+use landau_solver::study::critical::{self, Quantity, Question};
+use landau_solver::study::minimise::minimise;
+use landau_solver::study::modes::Modes;
+use landau_solver::study::point::PointReport;
+use landau_solver::study::row::Row;
+use landau_solver::study::spectrum::SpectrumReport;
+use landau_solver::study::sweep::{Range, Sweep};
+use landau_solver::study::verify::Certificate;
+use landau_solver::study::{Axis, Setup, check_wavenumber};
+use landau_solver::weakly::{Selection, Window, pattern};
+use landau_solver::words;
+use pyo3::prelude::*;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+/// Re and Im of an eigenvalue that a mode is near to.
+type Near = Option<(f64, f64)>;
+
+fn setup<'m>(core: &'m Core, set: &[String], resolution: usize) -> Result<Setup<'m>> {
+    if !(4..=1000).contains(&resolution) {
+        return Err(Error::input(format!(
+            "M = {resolution} is out of range: it accepts 4 to 1000"
+        )));
+    }
+    let mut setup = Setup::new(core.model.as_ref(), resolution);
+    setup.set(set)?;
+    Ok(setup)
+}
+
+fn selection(near: Near) -> Selection<'static> {
+    near.map_or(Selection::Leading, |(re, im)| {
+        Selection::Near(C64::new(re, im))
+    })
+}
+
+fn profiles(setup: &Setup, points: usize) -> Result<Value> {
+    if !(2..=100_000).contains(&points) {
+        return Err(Error::input(format!(
+            "points = {points} is out of range: it accepts 2 to 100000"
+        )));
+    }
+    let state = setup.base(None)?;
+    let structure = setup.model.structure();
+    let count = if structure.coordinate.is_some() {
+        points
+    } else {
+        1
+    };
+    let states: Vec<Vec<f64>> = (0..count)
+        .map(|i| match count {
+            1 => state.point(setup.model, 0.0, 0.0),
+            _ => state.point(setup.model, -1.0 + 2.0 * i as f64 / (count - 1) as f64, 0.0),
+        })
+        .collect();
+    let column = |position: usize| {
+        states
+            .iter()
+            .map(|s| words::number(s[position]))
+            .collect::<Vec<_>>()
+    };
+    let mut fields = Map::new();
+    for (field, info) in structure.fields.iter().enumerate() {
+        fields.insert(
+            info.name.clone(),
+            column(structure.base_position(field, 0)).into(),
+        );
+    }
+    Ok(json!({
+        "model": structure.name,
+        "parameters": words::parameters(setup, &state.parameters),
+        "degree": state.degree,
+        "tail": words::number(state.tail()),
+        "residual": words::number(state.residual),
+        "y": column(structure.state().coordinate()),
+        "profiles": fields,
+    }))
+}
+
+fn row(row: &Row) -> Value {
+    json!({
+        "place": row.coordinates,
+        "c0": row.c0,
+        "c0_error": row.c0_error,
+        "c2": row.c2,
+        "c2_error": row.c2_error,
+        "amplitude": row.amplitude,
+        "bifurcation": row.bifurcation,
+        "mean_flow": row.mean_flow,
+        "second_harmonic": row.second_harmonic,
+        "status": row.status,
+    })
+}
+
+fn quantity(of: &str) -> Result<Quantity> {
+    match of {
+        "growth" => Ok(Quantity::Growth),
+        "c2" => Ok(Quantity::C2),
+        "resonance" => Ok(Quantity::Resonance),
+        _ => Err(Error::input(format!(
+            "of = `{of}`: it accepts growth, c2, resonance"
+        ))),
+    }
+}
+
+fn modes(found: &Modes) -> Value {
+    let parts =
+        |values: &[C64]| -> Vec<Value> { values.iter().map(|v| words::complex(*v)).collect() };
+    let profiles = found.profiles.iter().map(|profile| {
+        let own = profile.parts.iter().zip(&profile.values);
+        let own: Map<String, Value> = own.map(|(p, v)| (p.clone(), parts(v).into())).collect();
+        (profile.name.clone(), Value::Object(own))
+    });
+    json!({"y": found.heights, "modes": profiles.collect::<Map<_, _>>()})
+}
+
+#[pymethods]
+impl Core {
+    /// The base state at `points` heights.
+    fn base(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        points: usize,
+    ) -> PyResult<String> {
+        watched(py, |_| {
+            Ok(profiles(&setup(self, &set, resolution)?, points)?.to_string())
+        })
+    }
+
+    fn spectrum(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        k: f64,
+    ) -> PyResult<String> {
+        watched(py, |_| {
+            Ok(SpectrumReport::compute(&setup(self, &set, resolution)?, k)?
+                .json()
+                .to_string())
+        })
+    }
+
+    fn point(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        k: f64,
+        near: Near,
+        order: usize,
+    ) -> PyResult<String> {
+        watched(py, |_| {
+            let setup = setup(self, &set, resolution)?;
+            Ok(PointReport::compute(&setup, k, selection(near), order)?
+                .json()
+                .to_string())
+        })
+    }
+
+    /// The modes of the expansion and the adjoint mode as profiles.
+    fn modes(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        k: f64,
+        near: Near,
+    ) -> PyResult<String> {
+        watched(py, |_| {
+            let setup = setup(self, &set, resolution)?;
+            Ok(modes(&Modes::compute(&setup, k, selection(near))?).to_string())
+        })
+    }
+
+    /// Wavenumber and nearby eigenvalue of each mode.
+    fn amplitudes(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        modes: Vec<(f64, Near)>,
+        order: usize,
+    ) -> PyResult<String> {
+        watched(py, |_| {
+            let setup = setup(self, &set, resolution)?;
+            let choices = modes.iter().map(|(k, near)| ModeChoice {
+                k: *k,
+                near: near.map(|(re, im)| C64::new(re, im)),
+            });
+            let choices: Vec<ModeChoice> = choices.collect();
+            Ok(AmplitudesReport::compute(&setup, &choices, order)?
+                .json()
+                .to_string())
+        })
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "the options of the command")]
+    fn critical(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        vary: String,
+        between: (f64, f64),
+        of: String,
+        k: Option<f64>,
+        minimize: Option<(f64, f64)>,
+        near: Near,
+    ) -> PyResult<String> {
+        watched(py, |watch| {
+            let setup = setup(self, &set, resolution)?;
+            let axis = Axis::named(setup.model, &vary)?;
+            let (from, to) = between;
+            for value in [from, to] {
+                if axis == Axis::Wavenumber {
+                    check_wavenumber(value)?;
+                }
+                setup.moved(axis, value)?;
+            }
+            if axis != Axis::Wavenumber && minimize.is_none() {
+                let missing = || Error::input("give the wavenumber k, or a range with minimize");
+                check_wavenumber(k.ok_or_else(missing)?)?;
+            }
+            let question = Question {
+                axis,
+                from,
+                to,
+                quantity: quantity(&of)?,
+                k: k.unwrap_or(0.0),
+                near: near.map(|(re, im)| C64::new(re, im)),
+            };
+            let found = match minimize {
+                Some(range) => vec![minimise(&setup, question, range, watch)?],
+                None => critical::critical(&setup, question, watch)?,
+            };
+            let points = found.iter().map(|c| {
+                json!({"parameter": vary, "of": of, "value": c.value, "error": c.error, "k": c.k, "c0": words::complex(c.c0)})
+            });
+            Ok(points.collect::<Value>().to_string())
+        })
+    }
+
+    /// Rows over the product of axes, the first varying fastest; into a CSV file with a journal where `out` is given.
+    #[allow(clippy::too_many_arguments, reason = "the options of the command")]
+    fn sweep(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        axes: Vec<(String, Vec<f64>)>,
+        k: Option<f64>,
+        near: Near,
+        out: Option<String>,
+    ) -> PyResult<String> {
+        watched(py, |watch| {
+            let setup = setup(self, &set, resolution)?;
+            let mut ranges = Vec::new();
+            for (name, values) in axes {
+                let axis = Axis::named(setup.model, &name)?;
+                if values.is_empty() {
+                    return Err(Error::input(format!("the axis `{name}` has no values")));
+                }
+                for &value in &values {
+                    if axis == Axis::Wavenumber {
+                        check_wavenumber(value)?;
+                    }
+                    setup.moved(axis, value)?;
+                }
+                ranges.push(Range { name, axis, values });
+            }
+            if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
+                check_wavenumber(
+                    k.ok_or_else(|| Error::input("no axis is k: give the wavenumber"))?,
+                )?;
+            }
+            let sweep = Sweep {
+                setup: &setup,
+                ranges,
+                near: near.map(|(re, im)| C64::new(re, im)),
+                k,
+            };
+            let rows = match out {
+                Some(path) => {
+                    sweep.check_output(Path::new(&path))?;
+                    sweep.run_to(Path::new(&path), watch, |_| {})?
+                }
+                None => sweep.run(watch),
+            };
+            Ok(rows.iter().map(row).collect::<Value>().to_string())
+        })
+    }
+
+    fn verify(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        k: f64,
+        near: Near,
+        order: usize,
+    ) -> PyResult<String> {
+        watched(py, |_| {
+            let setup = setup(self, &set, resolution)?;
+            Ok(Certificate::compute(&setup, k, selection(near), order)?
+                .json()
+                .to_string())
+        })
+    }
+
+    /// Fields over the plane: base, fundamental alone, through third order.
+    #[allow(clippy::too_many_arguments, reason = "the options of the command")]
+    fn pattern(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        k: f64,
+        near: Near,
+        amplitude: Option<f64>,
+        points: (usize, usize),
+        wavelengths: f64,
+    ) -> PyResult<String> {
+        watched(py, |_| {
+            let setup = setup(self, &set, resolution)?;
+            check_wavenumber(k)?;
+            let (columns, rows) = points;
+            let window = Window {
+                columns: columns.clamp(2, 4000),
+                rows: rows.clamp(2, 4000),
+                wavelengths,
+            };
+            let base = setup.base(None)?;
+            setup.with_point(&base, k, selection(near), |point| {
+                let missing = || {
+                    Error::computation("there is no equilibrium amplitude at cubic order: give one with amplitude")
+                };
+                let amplitude = amplitude.or(point.amplitude()).ok_or_else(missing)?;
+                let found = pattern(point, amplitude, window)?;
+                let fields = found.names.iter().enumerate().map(|(i, name)| {
+                    let value = json!({"base": found.base[i], "linear": found.linear[i], "nonlinear": found.nonlinear[i]});
+                    (name.clone(), value)
+                });
+                let fields: Map<String, Value> = fields.collect();
+                Ok(json!({"k": k, "amplitude": amplitude, "x": found.x, "y": found.y, "fields": fields}).to_string())
+            })
+        })
+    }
+}

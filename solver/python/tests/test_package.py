@@ -1,0 +1,167 @@
+"""The package against published numbers, against the command line to the last digit, and its manners."""
+
+import json
+import os
+import pickle
+import signal
+import subprocess
+import threading
+import time
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import numpy as np
+import pytest
+
+import stuart_landau
+from stuart_landau import ComputationError, InputError, Model, built
+
+ROOT = Path(__file__).resolve().parents[3]
+LANDAU = os.environ.get("LANDAU", str(ROOT / "target" / "release" / "landau"))
+
+
+def command(line):
+    """What the command line says."""
+    answer = subprocess.run([LANDAU, *line.split(), "--json"], cwd=ROOT, capture_output=True, text=True, check=True)
+    return json.loads(answer.stdout)
+
+
+def test_published_numbers():
+    point = Model("swift_hohenberg").point(k=1, r=0.1, b=1, order=5)
+    assert point.c2.real == pytest.approx(0.856143856143856144, rel=1e-12)
+    assert point.c4.real == pytest.approx(-29.8936180109206892, rel=1e-11)
+    convection = Model("rayleigh_benard")
+    onset = convection.critical("Ra", (1500, 2000), minimize=(2.5, 4.0), M=32)
+    assert onset.value == pytest.approx(1707.761777104718, rel=1e-10)
+    assert onset.k == pytest.approx(3.116323554821122, rel=1e-8)
+    rolls = convection.point(k=3.116323554821122, Ra=1707.761777104718, Pr=7, M=32)
+    assert rolls.c2.real == pytest.approx(-238.7135246614527, rel=1e-8)
+    pair = Model("swift_hohenberg").amplitudes([0.62, 1.24], r=0.3, b=0.5)
+    assert pair.coefficient(0, [2, 0], [1, 0]).real == pytest.approx(-1.15523096803, rel=1e-10)
+    waves = Model("brusselator").point(k=1, A=2, B=7, D1=1, D2=1).waves
+    assert waves["stable"] == "travelling"
+
+
+def test_the_command_line_to_the_last_digit():
+    bed = Model("vibrated_bed")
+    assert bed.point(k=0.16, order=5).data == command("point vibrated_bed --k 0.16 --order 5")
+    assert bed.spectrum(k=0.1, M=40).data == command("spectrum vibrated_bed --k 0.1 -M 40")
+    assert bed.base(S=200, H="auto").tail == command("base vibrated_bed --set S=200 --set H=auto")["tail"]
+    assert bed.verify(k=0.16).data == command("verify vibrated_bed --k 0.16")
+    strip = Model("swift_hohenberg_strip")
+    found = strip.amplitudes([0.63, 1.26], r=1.36, b=0.5, M=30).data
+    assert found == command("amplitudes swift_hohenberg_strip --mode k=0.63 --mode k=1.26 --set r=1.36 --set b=0.5 -M 30")
+
+
+def test_sweeps(tmp_path):
+    model = Model("swift_hohenberg")
+    sweep = model.sweep(k=np.linspace(0.9, 1.1, 5), r=[0.1, 0.2, 0.3], b=0.5)
+    assert sweep.c2.shape == (5, 3)
+    assert np.all(sweep.status == "ok")
+    exact = model.point(k=0.95, r=0.2, b=0.5)
+    assert sweep.c2[1, 1] == pytest.approx(exact.c2, rel=1e-12)
+    assert sweep.c0[2, 2].real == pytest.approx(0.3, abs=1e-12)
+    dataset = sweep.to_xarray()
+    assert dict(dataset.sizes) == {"k": 5, "r": 3}
+    assert dataset.attrs["model"] == "swift_hohenberg"
+    assert float(dataset.c2_re.sel(r=0.2).isel(k=1)) == sweep.c2[1, 1].real
+    assert len(sweep.plot()) == 3
+    out = tmp_path / "sweep.csv"
+    model.sweep(k=[0.9, 1.0], r=0.1, out=out)
+    assert out.read_text().startswith("k,c0_re")
+
+
+def test_pictures_and_tables():
+    bed = Model("vibrated_bed")
+    point = bed.point(k=0.16)
+    assert "supercritical" in repr(point) and "<table>" in point._repr_html_()
+    assert point._repr_latex_().startswith("$$ \\frac{dA}{dt}")
+    assert "±" in repr(bed.amplitudes([0.16]))
+    assert bed.modes(k=0.16)["X[1;1]"]["n"].shape == (201,)
+    bed.modes(k=0.16).plot()
+    bed.base().plot()
+    bed.spectrum(k=0.16).plot()
+    pattern = bed.pattern(k=0.16, points=(33, 17))
+    assert pattern.nonlinear["T"].shape == (17, 33)
+    assert pattern.to_xarray().n_nonlinear.dims == ("y", "x")
+    pattern.plot("T")
+    assert any(r"\partial" in row for row in bed.operators.latex("L"))
+    assert "boundary conditions" in bed.operators.text("adjoint")
+
+
+def test_texts_and_pickles():
+    text = (ROOT / "spec" / "models" / "swift_hohenberg.model").read_text()
+    model = Model.from_text(text)
+    assert model.point(k=1, b=0.5).data == pickle.loads(pickle.dumps(model)).point(k=1, b=0.5).data
+    restored = pickle.loads(pickle.dumps(Model("vibrated_bed")))
+    assert restored.point(k=0.16).c0 == pytest.approx(Model("vibrated_bed").point(k=0.16).c0, rel=1e-9)
+    other = Model(ROOT / "spec" / "models" / "brusselator.model")
+    assert other.name == "brusselator" and set(other.fields) == {"u", "v"}
+    assert "vibrated_bed" in built() and stuart_landau.__version__
+
+
+def test_errors_are_exceptions():
+    model = Model("swift_hohenberg")
+    with pytest.raises(InputError, match="no parameter `q`"):
+        model.point(k=1, q=2)
+    with pytest.raises(InputError, match="did you mean"):
+        Model("swift_hohenburg")
+    with pytest.raises(ValueError, match="text.model:2"):
+        Model.from_text('model m "a model";\nfeilds { u; }')
+    with pytest.raises(ComputationError, match="does not change sign"):
+        model.critical("r", (0.5, 0.6), k=1.0)
+    with pytest.raises(InputError, match="nothing varies"):
+        model.sweep(k=1.0)
+    with pytest.raises(InputError, match="odd numbers"):
+        model.point(k=1, order=4)
+
+
+def test_ctrl_c_ends_a_sweep(tmp_path):
+    bed = Model("vibrated_bed")
+    out = tmp_path / "long.csv"
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    started = time.monotonic()
+    threading.Timer(1.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            bed.sweep(k=np.linspace(0.03, 0.18, 4000), S=np.linspace(80, 400, 50), out=out)
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    assert time.monotonic() - started < 4.0
+    assert not out.exists()
+
+
+def test_the_interpreter_is_free_meanwhile():
+    bed = Model("vibrated_bed")
+    counted = 0
+    done = threading.Event()
+
+    def count():
+        nonlocal counted
+        while not done.is_set():
+            counted += 1
+            time.sleep(0.005)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    bed.sweep(k=np.linspace(0.1, 0.17, 200))
+    done.set()
+    thread.join()
+    assert counted > 10
+
+
+def test_the_notebook_runs(tmp_path, monkeypatch):
+    notebook = json.loads((ROOT / "solver" / "python" / "examples" / "figure6.ipynb").read_text())
+    monkeypatch.chdir(tmp_path)
+    scope = {}
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            exec(compile("".join(cell["source"]), "figure6.ipynb", "exec"), scope)
+    # The paper prints 0.0366, 0.1748 and 0.0703.
+    assert scope["upper"].value == pytest.approx(0.17454, abs=2e-5)
+    assert scope["sign"].value == pytest.approx(0.0705, abs=1e-4)
+    assert scope["swapped"].c0.real == pytest.approx(0.0045444655, abs=1e-9)
+    assert scope["swapped"].c2.real == pytest.approx(-0.0045849456, abs=1e-9)
