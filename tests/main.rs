@@ -20,6 +20,7 @@ mod published;
 mod published_bed;
 mod recipes;
 mod reproduce;
+mod shards;
 mod statements;
 mod support;
 mod sweeps;

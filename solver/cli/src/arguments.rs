@@ -125,7 +125,7 @@ pub enum Command {
     },
     /// Landau points over ranges of k and parameters, as CSV; resumes where it was interrupted.
     #[command(
-        after_help = "Examples:\n  landau sweep my.model --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep my.model --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv"
+        after_help = "Examples:\n  landau sweep my.model --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep my.model --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv --shard 3/16\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv --emit slurm --tasks 64"
     )]
     Sweep {
         /// A built model, or the path of a .model file.
@@ -134,6 +134,12 @@ pub enum Command {
         options: SweepOptions,
         #[command(flatten)]
         common: Common,
+    },
+    /// Put the shares of a sweep together: the table that one machine would have written, byte for byte.
+    #[command(after_help = "Example: landau merge atlas.csv.shard-* --out atlas.csv")]
+    Merge {
+        #[command(flatten)]
+        options: MergeOptions,
     },
     /// The fields over the (x, y)-plane, as pictures and as data.
     #[command(
@@ -233,6 +239,38 @@ pub struct SweepOptions {
     /// A picture of growth rate, c2 and amplitude over the first axis.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+    /// Compute one share of the sweep, to be merged; `slurm` takes that of the task of a job array.
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["plot", "emit"])]
+    pub shard: Option<String>,
+    /// Write a script or job file that runs the sweep in shares, instead of running it.
+    #[arg(long, value_enum)]
+    pub emit: Option<Engine>,
+    /// Number of shares, with --emit.
+    #[arg(long, default_value_t = 16, value_name = "N")]
+    pub tasks: usize,
+    /// Cores of a share, with --emit.
+    #[arg(long, default_value_t = 4, value_name = "N")]
+    pub cpus: usize,
+}
+
+/// What runs the shares of a sweep.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Engine {
+    Hq,
+    Slurm,
+}
+
+#[derive(Args)]
+pub struct MergeOptions {
+    /// The files of all shares.
+    #[arg(required = true, value_name = "SHARD")]
+    pub shards: Vec<PathBuf>,
+    /// Where the table goes.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Overwrite a file that is another table.
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Args)]

@@ -11,6 +11,7 @@ macro_rules! say {
 }
 
 mod arguments;
+mod cluster;
 mod inspect;
 mod interrupt;
 mod pattern;
@@ -112,6 +113,7 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
         } => with_setup(library, &model, &common, |setup| {
             solve::sweep(setup, &options, &common)
         }),
+        Command::Merge { options } => cluster::merge(&options),
         Command::Pattern {
             model,
             options,

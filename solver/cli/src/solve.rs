@@ -2,7 +2,7 @@
 
 use crate::arguments::{Common, CriticalOptions, Of, SweepOptions, range};
 use crate::progress::Bar;
-use crate::{interrupt, picture};
+use crate::{cluster, interrupt, picture};
 use landau_report::figure;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{destination, write_whole};
@@ -294,6 +294,12 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
         near: common.near,
         k: options.k,
     };
+    if let Some(engine) = options.emit {
+        return cluster::emit(engine, options);
+    }
+    if let Some(share) = &options.shard {
+        return cluster::run_share(&sweep, share, options, common);
+    }
     if let Some(plot) = &options.plot {
         destination(plot)?;
     }
@@ -336,7 +342,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
 }
 
 /// Says what an earlier run has left.
-fn resumed(found: Resumed) {
+pub fn resumed(found: Resumed) {
     if found.taken > 0 {
         eprintln!(
             "resumed: {} rows are taken from an interrupted run",

@@ -14,6 +14,7 @@ pub mod quadrature;
 mod root;
 pub mod row;
 pub mod sensitivity;
+pub mod shard;
 pub mod spectrum;
 pub mod sweep;
 pub mod verify;

@@ -1,6 +1,6 @@
 //! One row of a sweep's table, and the columns that can be drawn.
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
 /// Columns after the axes.
@@ -57,6 +57,19 @@ pub enum Column {
     Threshold,
 }
 
+/// A table as CSV.
+pub(super) fn table<'h>(header: impl Iterator<Item = &'h str>, rows: &[Row]) -> Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let failure = |e: csv::Error| Error::computation(format!("the table cannot be written: {e}"));
+    writer.write_record(header).map_err(failure)?;
+    for row in rows {
+        writer.write_record(row.record()).map_err(failure)?;
+    }
+    writer
+        .into_inner()
+        .map_err(|e| Error::computation(e.to_string()))
+}
+
 /// One column over the first axis; NaN where there is no value.
 pub fn column(rows: &[Row], column: Column) -> Vec<(f64, f64)> {
     let value = |row: &Row| match column {
@@ -80,7 +93,7 @@ impl Row {
     }
 
     /// Its cells: the coordinates, then [`COLUMNS`]; what is missing is empty.
-    pub(super) fn record(&self) -> Vec<String> {
+    fn record(&self) -> Vec<String> {
         let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
         let mut record: Vec<String> = self.coordinates.iter().map(f64::to_string).collect();
         for (pair, error) in [(self.c0, self.c0_error), (self.c2, self.c2_error)] {

@@ -6,7 +6,7 @@
 
 use super::journal::Journal;
 use super::point::UNCONVERGED;
-use super::row::{COLUMNS, Row};
+use super::row::{COLUMNS, Row, table};
 use super::{Axis, Carried, Progress, Setup};
 use crate::error::{Error, Result};
 use crate::file::destination;
@@ -69,14 +69,16 @@ impl Sweep<'_, '_> {
         self.ranges[0].values.len().div_ceil(CHUNK)
     }
 
-    fn chunk_count(&self) -> usize {
+    pub(super) fn chunk_count(&self) -> usize {
         let lines: usize = self.ranges[1..].iter().map(|r| r.values.len()).product();
         lines * self.chunks_per_line()
     }
 
     /// Computes every row.
     pub fn run(&self, progress: &dyn Progress) -> Vec<Row> {
-        self.run_chunks(&BTreeMap::new(), progress, &|_, _| {})
+        let all = 0..self.chunk_count();
+        let rows = self.run_chunks(all, &BTreeMap::new(), progress, &|_, _| {});
+        rows.into_values().flatten().collect()
     }
 
     /// Whether a file holds a table of this sweep's columns and places.
@@ -124,8 +126,23 @@ impl Sweep<'_, '_> {
         resumed: impl FnOnce(Resumed),
     ) -> Result<Vec<Row>> {
         let target = destination(out)?;
-        let journal = Journal::open(&target, self.fingerprint(), |chunk, rows| {
-            chunk < self.chunk_count()
+        let (rows, journal) = self.journalled(&target, 0..self.chunk_count(), progress, resumed)?;
+        let rows: Vec<Row> = rows.into_values().flatten().collect();
+        crate::file::write_whole(&target, &table(self.header(), &rows)?)?;
+        journal.remove();
+        Ok(rows)
+    }
+
+    /// Some chunks, with a journal beside `target` that is still open.
+    pub(super) fn journalled(
+        &self,
+        target: &Path,
+        part: std::ops::Range<usize>,
+        progress: &dyn Progress,
+        resumed: impl FnOnce(Resumed),
+    ) -> Result<(BTreeMap<usize, Vec<Row>>, Journal)> {
+        let journal = Journal::open(target, self.fingerprint(), |chunk, rows| {
+            part.contains(&chunk)
                 && rows
                     .iter()
                     .map(|r| &r.coordinates)
@@ -135,37 +152,36 @@ impl Sweep<'_, '_> {
             taken: journal.known.values().map(Vec::len).sum(),
             damaged: journal.damaged,
         });
-        let rows = self.run_chunks(&journal.known, progress, &|chunk, rows| {
+        let rows = self.run_chunks(part, &journal.known, progress, &|chunk, rows| {
             journal.record(chunk, rows)
         });
-        crate::file::write_whole(&target, &self.csv(&rows)?)?;
-        journal.remove();
-        Ok(rows)
+        Ok((rows, journal))
     }
 
     fn run_chunks(
         &self,
+        part: std::ops::Range<usize>,
         known: &BTreeMap<usize, Vec<Row>>,
         progress: &dyn Progress,
         record: &(dyn Fn(usize, &[Row]) + Sync),
-    ) -> Vec<Row> {
-        progress.begin(self.len());
-        let chunks: Vec<Vec<Row>> = (0..self.chunk_count())
+    ) -> BTreeMap<usize, Vec<Row>> {
+        progress.begin(part.clone().map(|chunk| self.places(chunk).len()).sum());
+        let chunks: BTreeMap<usize, Vec<Row>> = part
             .into_par_iter()
             .map(|chunk| {
                 if let Some(rows) = known.get(&chunk) {
                     progress.advance(rows.len());
-                    return rows.clone();
+                    return (chunk, rows.clone());
                 }
                 // Whoever wants to stop can do so here.
                 progress.advance(0);
                 let rows = self.chunk(chunk, progress);
                 record(chunk, &rows);
-                rows
+                (chunk, rows)
             })
             .collect();
         progress.end();
-        chunks.into_iter().flatten().collect()
+        chunks
     }
 
     /// The places of a chunk.
@@ -269,30 +285,13 @@ impl Sweep<'_, '_> {
         Ok((row, pair))
     }
 
-    fn header(&self) -> impl Iterator<Item = &str> {
+    pub(super) fn header(&self) -> impl Iterator<Item = &str> {
         let axes = self.ranges.iter().map(|r| r.name.as_str());
         axes.chain(COLUMNS)
     }
 
-    /// The table as CSV.
-    ///
-    /// # Errors
-    /// Rows that do not serialise.
-    pub fn csv(&self, rows: &[Row]) -> Result<Vec<u8>> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let failure =
-            |e: csv::Error| Error::computation(format!("the table cannot be written: {e}"));
-        writer.write_record(self.header()).map_err(failure)?;
-        for row in rows {
-            writer.write_record(row.record()).map_err(failure)?;
-        }
-        writer
-            .into_inner()
-            .map_err(|e| Error::computation(e.to_string()))
-    }
-
     /// What a journal must have been made for.
-    fn fingerprint(&self) -> String {
+    pub(super) fn fingerprint(&self) -> String {
         let structure = self.setup.model.structure();
         format!(
             "{} {:?} {:?} M={} k={:?} near={:?} {:?} v{} {}",
