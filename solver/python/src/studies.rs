@@ -3,6 +3,7 @@
 use crate::model::Core;
 use crate::watch::watched;
 use landau_solver::error::{Error, Result};
+use landau_solver::file::write_whole;
 use landau_solver::model::C64;
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{self, Quantity, Question};
@@ -10,6 +11,7 @@ use landau_solver::study::minimise::minimise;
 use landau_solver::study::modes::Modes;
 use landau_solver::study::point::PointReport;
 use landau_solver::study::row::Row;
+use landau_solver::study::shard::{Share, merge};
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::verify::Certificate;
@@ -18,7 +20,7 @@ use landau_solver::weakly::{Selection, Window, pattern};
 use landau_solver::words;
 use pyo3::prelude::*;
 use serde_json::{Map, Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Re and Im of an eigenvalue that a mode is near to.
 type Near = Option<(f64, f64)>;
@@ -81,6 +83,38 @@ fn profiles(setup: &Setup, points: usize) -> Result<Value> {
         "y": column(structure.state().coordinate()),
         "profiles": fields,
     }))
+}
+
+/// A sweep over axes that are checked.
+fn swept<'s, 'm>(
+    setup: &'s Setup<'m>,
+    axes: Vec<(String, Vec<f64>)>,
+    k: Option<f64>,
+    near: Near,
+) -> Result<Sweep<'s, 'm>> {
+    let mut ranges = Vec::new();
+    for (name, values) in axes {
+        let axis = Axis::named(setup.model, &name)?;
+        if values.is_empty() {
+            return Err(Error::input(format!("the axis `{name}` has no values")));
+        }
+        for &value in &values {
+            if axis == Axis::Wavenumber {
+                check_wavenumber(value)?;
+            }
+            setup.moved(axis, value)?;
+        }
+        ranges.push(Range { name, axis, values });
+    }
+    if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
+        check_wavenumber(k.ok_or_else(|| Error::input("no axis is k: give the wavenumber"))?)?;
+    }
+    Ok(Sweep {
+        setup,
+        ranges,
+        near: near.map(|(re, im)| C64::new(re, im)),
+        k,
+    })
 }
 
 fn row(row: &Row) -> Value {
@@ -263,31 +297,7 @@ impl Core {
     ) -> PyResult<String> {
         watched(py, |watch| {
             let setup = setup(self, &set, resolution)?;
-            let mut ranges = Vec::new();
-            for (name, values) in axes {
-                let axis = Axis::named(setup.model, &name)?;
-                if values.is_empty() {
-                    return Err(Error::input(format!("the axis `{name}` has no values")));
-                }
-                for &value in &values {
-                    if axis == Axis::Wavenumber {
-                        check_wavenumber(value)?;
-                    }
-                    setup.moved(axis, value)?;
-                }
-                ranges.push(Range { name, axis, values });
-            }
-            if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
-                check_wavenumber(
-                    k.ok_or_else(|| Error::input("no axis is k: give the wavenumber"))?,
-                )?;
-            }
-            let sweep = Sweep {
-                setup: &setup,
-                ranges,
-                near: near.map(|(re, im)| C64::new(re, im)),
-                k,
-            };
+            let sweep = swept(&setup, axes, k, near)?;
             let rows = match out {
                 Some(path) => {
                     sweep.check_output(Path::new(&path))?;
@@ -297,6 +307,32 @@ impl Core {
             };
             Ok(rows.iter().map(row).collect::<Value>().to_string())
         })
+    }
+
+    /// One share of the same, into a file of its own.
+    #[allow(clippy::too_many_arguments, reason = "the options of the command")]
+    fn sweep_share(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        axes: Vec<(String, Vec<f64>)>,
+        k: Option<f64>,
+        near: Near,
+        share: (usize, usize),
+        out: String,
+    ) -> PyResult<()> {
+        watched(py, |watch| {
+            let setup = setup(self, &set, resolution)?;
+            let share = Share::parse(&format!("{}/{}", share.0, share.1))?;
+            swept(&setup, axes, k, near)?.run_share(share, Path::new(&out), watch, |_| {})
+        })
+    }
+
+    /// Puts the files of all shares together.
+    #[staticmethod]
+    fn merge(py: Python<'_>, shards: Vec<PathBuf>, out: PathBuf) -> PyResult<()> {
+        watched(py, |_| write_whole(&out, &merge(&shards)?))
     }
 
     fn verify(

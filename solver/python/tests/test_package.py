@@ -165,3 +165,47 @@ def test_the_notebook_runs(tmp_path, monkeypatch):
     assert scope["sign"].value == pytest.approx(0.0705, abs=1e-4)
     assert scope["swapped"].c0.real == pytest.approx(0.0045444655, abs=1e-9)
     assert scope["swapped"].c2.real == pytest.approx(-0.0045849456, abs=1e-9)
+
+
+def test_a_cluster_of_two_workers(tmp_path):
+    """Two workers of a local HyperQueue cluster: the file is the plain one, byte for byte."""
+    from hyperqueue.cluster import LocalCluster, WorkerConfig
+
+    model = Model("swift_hohenberg")
+    places = {"k": np.linspace(0.8, 1.2, 101), "r": [0.1, 0.2, 0.3], "b": 0.5}
+    plain = model.sweep(**places, out=tmp_path / "plain.csv")
+    with LocalCluster(str(tmp_path / "server"), WorkerConfig(cores=1)) as cluster:
+        cluster.start_worker(WorkerConfig(cores=1))
+        found = model.sweep(**places, out=tmp_path / "shared.csv", cluster=cluster.client(), tasks=5)
+    assert (tmp_path / "shared.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+    assert np.array_equal(found.c2, plain.c2) and np.array_equal(found.status, plain.status)
+    assert not list(tmp_path.glob("*.shard-*"))
+
+
+def test_a_share_that_was_killed_is_computed_again(tmp_path):
+    """A worker's process killed in the middle: its share starts anew, or goes on, and the merged file is the plain one."""
+    import pickle as pickles
+    import sys
+
+    bed = Model("vibrated_bed")
+    axes = [("k", list(np.linspace(0.05, 0.17, 200)))]
+    assignment = (["H=40.0"], 40, axes, None, None)
+    file = tmp_path / "assignment"
+    file.write_bytes(pickles.dumps((bed, assignment)))
+    plain = tmp_path / "plain.csv"
+    bed.sweep(k=axes[0][1], H=40.0, M=40, out=plain)
+
+    def share(index):
+        out = tmp_path / f"part-{index}"
+        command = [sys.executable, "-m", "stuart_landau.cluster", str(file), str(index), "2", str(out)]
+        return subprocess.Popen(command, cwd=tmp_path), out
+
+    first, one = share(1)
+    time.sleep(0.8)
+    first.kill()
+    first.wait()
+    again, one = share(1)
+    second, two = share(2)
+    assert again.wait() == 0 and second.wait() == 0
+    stuart_landau._core.Core.merge([str(one), str(two)], str(tmp_path / "merged.csv"))
+    assert (tmp_path / "merged.csv").read_bytes() == plain.read_bytes()

@@ -42,6 +42,18 @@ class Core:
         near: Near,
         out: str | None,
     ) -> str: ...
+    def sweep_share(
+        self,
+        set: list[str],
+        resolution: int,
+        axes: list[tuple[str, list[float]]],
+        k: float | None,
+        near: Near,
+        share: tuple[int, int],
+        out: str,
+    ) -> None: ...
+    @staticmethod
+    def merge(shards: list[str], out: str) -> None: ...
     def verify(self, set: list[str], resolution: int, k: float, near: Near, order: int) -> str: ...
     def pattern(
         self,

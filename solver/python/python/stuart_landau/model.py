@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from . import cluster as distributed
 from ._core import Core, InputError
 from .results import (
     Amplitudes,
@@ -186,12 +188,16 @@ class Model:
         k: float | Sequence[float] | None = None,
         near: complex | None = None,
         M: int = 50,
+        cluster: Any = None,
+        tasks: int = 16,
+        cpus: int = 1,
         set: Mapping[str, Any] | None = None,
         **parameters: Any,
     ) -> Sweep:
         """Landau points over the product of all keywords that are sequences; the first one is followed.
 
-        With `out`, a CSV file, an interrupted sweep leaves a journal beside it and goes on from there.
+        With `out`, a CSV file, an interrupted sweep leaves a journal beside it and goes on from there. With `cluster`, a
+        `hyperqueue.Client`, the sweep runs there in `tasks` shares of `cpus` cores, through files beside `out`.
         """
         every = {**(set or {}), **parameters}
         axes = [(name, [float(x) for x in value]) for name, value in every.items() if _is_axis(value)]
@@ -203,6 +209,13 @@ class Model:
         if not axes:
             raise InputError("nothing varies: give k or a parameter as a sequence")
         target = None if out is None else os.fspath(out)
+        if cluster is not None:
+            if target is None:
+                raise InputError("a sweep on a cluster needs out, a file that all workers see")
+            assignment = (self._set(None, fixed), M, axes, number, _near(near))
+            path = Path(target).resolve()
+            distributed.run(cluster, self, assignment, path, tasks, cpus)
+            return Sweep(self, axes, distributed.rows(path, len(axes)))
         found = self._core.sweep(self._set(None, fixed), M, axes, number, _near(near), target)
         return Sweep(self, axes, json.loads(found))
 

@@ -1,0 +1,74 @@
+"""Sweeps on a HyperQueue cluster: each task computes one share, in a process of its own.
+
+`python -m stuart_landau.cluster ASSIGNMENT I N OUT` is what a task runs.
+"""
+
+from __future__ import annotations
+
+import csv
+import pickle
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ._core import Core
+
+if TYPE_CHECKING:
+    from .model import Model
+
+
+def run(client: Any, model: Model, assignment: tuple[Any, ...], out: Path, tasks: int, cpus: int) -> None:
+    """Submits the shares of a sweep, waits for them, and puts them together."""
+    from hyperqueue import Job
+    from hyperqueue.task.task import ResourceRequest
+
+    file = out.with_name(out.name + ".assignment")
+    file.write_bytes(pickle.dumps((model, assignment)))
+    shards = [out.with_name(f"{out.name}.shard-{index}") for index in range(1, tasks + 1)]
+    job = Job()
+    for index, shard in enumerate(shards, 1):
+        job.program(
+            [sys.executable, "-m", "stuart_landau.cluster", str(file), str(index), str(tasks), str(shard)],
+            env={"RAYON_NUM_THREADS": str(cpus)},
+            resources=ResourceRequest(cpus=cpus),
+        )
+    client.wait_for_jobs([client.submit(job)])
+    Core.merge([str(shard) for shard in shards], str(out))
+    for leftover in (file, *shards):
+        leftover.unlink()
+
+
+def rows(table: Path, axes: int) -> list[dict[str, Any]]:
+    """The rows of a sweep's table."""
+
+    def number(text: str) -> float | None:
+        return float(text) if text else None
+
+    def pair(row: dict[str, str], name: str) -> list[float] | None:
+        return [float(row[f"{name}_re"]), float(row[f"{name}_im"])] if row[f"{name}_re"] else None
+
+    def parsed(row: dict[str, str]) -> dict[str, Any]:
+        plain = ("c0_error", "c2_error", "amplitude", "mean_flow", "second_harmonic")
+        return {
+            "place": [float(x) for x in list(row.values())[:axes]],
+            "c0": pair(row, "c0"),
+            "c2": pair(row, "c2"),
+            **{name: number(row[name]) for name in plain},
+            "bifurcation": row["bifurcation"],
+            "status": row["status"],
+        }
+
+    with table.open(newline="") as file:
+        return [parsed(row) for row in csv.DictReader(file)]
+
+
+def main(arguments: list[str]) -> None:
+    """Computes one share."""
+    assignment, index, count, out = arguments
+    # A pickle that `run` wrote.
+    model, chosen = pickle.loads(Path(assignment).read_bytes())
+    model._core.sweep_share(*chosen, (int(index), int(count)), out)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
