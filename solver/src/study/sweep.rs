@@ -8,6 +8,7 @@ use super::journal::Journal;
 use super::point::UNCONVERGED;
 use super::row::{COLUMNS, Row, table};
 use super::{Axis, Carried, Progress, Setup};
+use crate::base::BaseState;
 use crate::error::{Error, Result};
 use crate::file::destination;
 use crate::model::C64;
@@ -17,6 +18,7 @@ use crate::weakly::{self, Bifurcation, LandauPoint, Selection, equilibrium};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// Points of the first axis that one worker follows.
 const CHUNK: usize = 40;
@@ -165,6 +167,9 @@ impl Sweep<'_, '_> {
         progress: &dyn Progress,
         record: &(dyn Fn(usize, &[Row]) + Sync),
     ) -> BTreeMap<usize, Vec<Row>> {
+        // Chunks of one line share its base state, made by whichever comes first.
+        let lines = self.chunk_count() / self.chunks_per_line();
+        let bases: Vec<OnceLock<Result<BaseState>>> = (0..lines).map(|_| OnceLock::new()).collect();
         progress.begin(part.clone().map(|chunk| self.places(chunk).len()).sum());
         let chunks: BTreeMap<usize, Vec<Row>> = part
             .into_par_iter()
@@ -175,7 +180,8 @@ impl Sweep<'_, '_> {
                 }
                 // Whoever wants to stop can do so here.
                 progress.advance(0);
-                let rows = self.chunk(chunk, progress);
+                let base = &bases[chunk / self.chunks_per_line()];
+                let rows = self.chunk(chunk, base, progress);
                 record(chunk, &rows);
                 (chunk, rows)
             })
@@ -202,7 +208,12 @@ impl Sweep<'_, '_> {
             .collect()
     }
 
-    fn chunk(&self, chunk: usize, progress: &dyn Progress) -> Vec<Row> {
+    fn chunk(
+        &self,
+        chunk: usize,
+        base: &OnceLock<Result<BaseState>>,
+        progress: &dyn Progress,
+    ) -> Vec<Row> {
         let places = self.places(chunk);
         if self.ranges[0].axis != Axis::Wavenumber {
             let step = |place: &[f64], near: Option<&Carried>| self.evaluate(place, near);
@@ -215,8 +226,9 @@ impl Sweep<'_, '_> {
         }
         // One base state and one set of coefficients serve the whole line.
         let line = self.at(&places[0]).and_then(|(setup, _)| {
-            let base = setup.base(None)?;
-            let pairs = Collocations::new(&setup, &base)?;
+            let base = base.get_or_init(|| setup.base(None));
+            let base = base.as_ref().map_err(Clone::clone)?;
+            let pairs = Collocations::new(&setup, base)?;
             let step =
                 |place: &[f64], near: Option<&EigenPair>| self.row(&pairs, place, place[0], near);
             Ok(follow(
@@ -315,7 +327,7 @@ struct Collocations<'m> {
 }
 
 impl<'m> Collocations<'m> {
-    fn new(setup: &'m Setup, base: &'m crate::base::BaseState) -> Result<Self> {
+    fn new(setup: &'m Setup, base: &'m BaseState) -> Result<Self> {
         let m = setup.effective_resolution();
         let problem = |m| Problem::new(setup.model, base, &setup.discretisation, m);
         Ok(Collocations {
