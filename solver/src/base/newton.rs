@@ -5,7 +5,7 @@
 //! inside asks for it, the polynomials are in a stretched coordinate η.
 
 use super::state::{BaseState, interval};
-use crate::collocation::{Grid, GridKind, Stretch, clenshaw_curtis, coefficients};
+use crate::collocation::{Grid, GridKind, Series, Stretch, clenshaw_curtis, coefficients};
 use crate::model::layout::{read_base_conditions, read_base_row, read_integral};
 use crate::model::{BaseJet, End, KernelId, Linearised, Model, evaluate};
 use crate::parameters::Parameters;
@@ -251,6 +251,8 @@ impl Discrete<'_> {
 
     fn state(&self, values: &[f64], residual: f64) -> BaseState {
         let own = |column: &Column| &values[column.first..][..column.grid.len()];
+        // Newton's method itself reads a first derivative.
+        let order = self.model().structure().base_order.max(1);
         BaseState {
             parameters: self.newton.parameters.clone(),
             case: self.case,
@@ -258,7 +260,11 @@ impl Discrete<'_> {
             upper: self.upper,
             degree: self.degree,
             stretch: self.stretch,
-            series: self.columns.iter().map(|c| coefficients(own(c))).collect(),
+            series: self
+                .columns
+                .iter()
+                .map(|c| Series::new(coefficients(own(c)), order))
+                .collect(),
             residual,
         }
     }
@@ -269,11 +275,22 @@ impl Discrete<'_> {
         let structure = model.structure();
         let state = self.state(values, 0.0);
         let mut rows: Vec<(f64, Vec<f64>)> = Vec::with_capacity(self.size);
+        // One run of the kernel gives all rows: those of one grid share it.
+        let mut outputs: Vec<(usize, Vec<Vec<f64>>)> = Vec::new();
+        for grid in &self.rows {
+            if !outputs.iter().any(|(points, _)| *points == grid.len()) {
+                let at = |&eta: &f64| {
+                    let point = state.point(model, self.stretch.xi(eta), 0.0);
+                    evaluate(model, KernelId::Base, &point)
+                };
+                outputs.push((grid.len(), grid.nodes.iter().map(at).collect()));
+            }
+        }
         for (index, row) in structure.base.rows.iter().enumerate() {
-            for (i, &eta) in self.rows[index].nodes.iter().enumerate() {
-                let point = state.point(model, self.stretch.xi(eta), 0.0);
-                let out = evaluate(model, KernelId::Base, &point);
-                let Linearised { value, slopes } = read_base_row(&structure.base.rows, index, &out);
+            let points = self.rows[index].len();
+            let own = outputs.iter().find(|(count, _)| *count == points);
+            for (i, out) in own.into_iter().flat_map(|(_, out)| out).enumerate() {
+                let Linearised { value, slopes } = read_base_row(&structure.base.rows, index, out);
                 rows.push((
                     value,
                     self.jacobian_row(&row.jets, &slopes, |column| &column.rows[index], i),

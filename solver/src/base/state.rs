@@ -1,6 +1,6 @@
 //! A base state: Chebyshev series of the solved fields, closed forms of the others.
 
-use crate::collocation::{Stretch, derivative_values};
+use crate::collocation::{Series, Stretch};
 use crate::error::{Error, Result};
 use crate::model::{End, KernelId, Model, PointState, ResidualId, WithRounding, evaluate};
 use crate::parameters::Parameters;
@@ -76,7 +76,7 @@ pub struct BaseState {
     /// The coordinate of the series.
     pub stretch: Stretch,
     /// Chebyshev coefficients of each solved field, in the order of `solved`; one for a number.
-    pub series: Vec<Vec<f64>>,
+    pub series: Vec<Series>,
     /// Largest residual of the discretised base problem, relative to its terms.
     pub residual: f64,
 }
@@ -131,7 +131,7 @@ impl BaseState {
         let eta = self.stretch.eta(xi);
         for (&field, series) in structure.base.solved.iter().zip(&self.series) {
             let mut scale = 1.0;
-            let derivatives = derivative_values(series, eta, structure.base_order);
+            let derivatives = series.values(eta, structure.base_order);
             let derivatives = self.stretch.compose(xi, &derivatives);
             for (order, value) in derivatives.into_iter().enumerate() {
                 point.set_base(field, order, value * scale);
@@ -149,7 +149,8 @@ impl BaseState {
 
     /// Size of the last Chebyshev coefficients, relative to the largest, of the worst field.
     pub fn tail(&self) -> f64 {
-        let tail = |series: &Vec<f64>| {
+        let tail = |series: &Series| {
+            let series = series.coefficients();
             let largest = series.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
             let last = series
                 .iter()
@@ -170,16 +171,14 @@ impl BaseState {
         let mut thinnest = (WIDE, Stretch::None);
         let places = (1..LAYER_SAMPLES).map(|i| -1.0 + 2.0 * i as f64 / LAYER_SAMPLES as f64);
         let places: Vec<f64> = places.collect();
-        for series in self.series.iter().filter(|s| s.len() > 1) {
-            let values = places
-                .iter()
-                .map(|&eta| derivative_values(series, eta, 0)[0]);
+        for series in self.series.iter().filter(|s| s.coefficients().len() > 1) {
+            let values = places.iter().map(|&eta| series.values(eta, 0)[0]);
             let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
                 (a.min(v), b.max(v))
             });
             for &eta in &places {
                 let xi = self.stretch.xi(eta);
-                let derivatives = derivative_values(series, eta, 1);
+                let derivatives = series.values(eta, 1);
                 let slope = self.stretch.compose(xi, &derivatives)[1].abs();
                 // Chebyshev points resolve a layer at an end by themselves.
                 let width = (most - least) / slope;

@@ -203,6 +203,9 @@ pub fn coefficients(values: &[f64]) -> Vec<f64> {
         return values.to_vec();
     }
     let degree = n - 1;
+    let cosines: Vec<f64> = (0..2 * degree)
+        .map(|phase| (PI * phase as f64 / degree as f64).cos())
+        .collect();
     (0..n)
         .map(|m| {
             let mut sum = 0.0;
@@ -210,7 +213,7 @@ pub fn coefficients(values: &[f64]) -> Vec<f64> {
                 // ξ_j = −cos(jπ/degree), T_m(ξ_j) = cos(m (degree − j) π/degree)
                 let weight = if j == 0 || j == degree { 0.5 } else { 1.0 };
                 let phase = (m * (degree - j)) % (2 * degree);
-                sum += weight * value * (PI * phase as f64 / degree as f64).cos();
+                sum += weight * value * cosines[phase];
             }
             let end = if m == 0 || m == degree { 1.0 } else { 2.0 };
             end * sum / degree as f64
@@ -218,15 +221,34 @@ pub fn coefficients(values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// Value and d/dξ derivatives to `order` of a Chebyshev series at one point (Clenshaw's recurrence).
-pub fn derivative_values(coefficients: &[f64], xi: f64, order: usize) -> Vec<f64> {
-    let mut series = coefficients.to_vec();
-    let mut values = Vec::with_capacity(order + 1);
-    for _ in 0..=order {
-        values.push(clenshaw(&series, xi));
-        series = differentiate(&series);
+/// A Chebyshev series with its derivatives, made once and evaluated at many points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Coefficients of the series and of d/dξ, d²/dξ², … of it.
+    derivatives: Vec<Vec<f64>>,
+}
+
+impl Series {
+    /// The series of some coefficients, with derivatives to `order`.
+    pub fn new(coefficients: Vec<f64>, order: usize) -> Self {
+        let mut derivatives = vec![coefficients];
+        for known in 0..order {
+            let next = differentiate(&derivatives[known]);
+            derivatives.push(next);
+        }
+        Series { derivatives }
     }
-    values
+
+    /// Its own coefficients.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.derivatives[0]
+    }
+
+    /// Value and derivatives by ξ at one point (Clenshaw's recurrence), up to `order`, at most that of [`Series::new`].
+    pub fn values(&self, xi: f64, order: usize) -> Vec<f64> {
+        let kept = self.derivatives.iter().take(order + 1);
+        kept.map(|series| clenshaw(series, xi)).collect()
+    }
 }
 
 fn clenshaw(series: &[f64], xi: f64) -> f64 {
@@ -258,7 +280,7 @@ fn differentiate(series: &[f64]) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Grid, GridKind, clenshaw_curtis, coefficients, derivative_values};
+    use super::{Grid, GridKind, Series, clenshaw_curtis, coefficients};
 
     /// d/dξ and d²/dξ² of ξⁿ between any two grids.
     #[test]
@@ -330,7 +352,7 @@ mod tests {
             let expected = if n == 4 { 1.0 } else { 0.0 };
             assert!((c - expected).abs() < 1e-14, "coefficient {n}");
         }
-        let found = derivative_values(&series, 1.0, 2);
+        let found = Series::new(series, 2).values(1.0, 2);
         for (found, expected) in found.iter().zip([1.0, 16.0, 80.0]) {
             assert!((found - expected).abs() < 1e-11);
         }

@@ -4,6 +4,6 @@ mod chebyshev;
 mod layout;
 mod stretch;
 
-pub use chebyshev::{Grid, GridKind, clenshaw_curtis, coefficients, derivative_values};
+pub use chebyshev::{Grid, GridKind, Series, clenshaw_curtis, coefficients};
 pub use layout::{Block, Discretisation, Layout};
 pub use stretch::Stretch;

@@ -3,7 +3,7 @@
 
 use super::{Check, Setup};
 use crate::base::BaseState;
-use crate::collocation::{Grid, derivative_values};
+use crate::collocation::{Grid, Series};
 use crate::error::Result;
 use crate::model::{C64, End, Jet, KernelId, evaluate};
 use crate::problem::{LinearProblem, Problem, quarter_turn};
@@ -130,7 +130,8 @@ fn admissible(
             .map(|(jet, c)| {
                 symbol(problem, *jet, k)
                     * *c
-                    * derivative_values(&unit, xi, jet.y.into())[usize::from(jet.y)]
+                    * Series::new(unit.clone(), jet.y.into()).values(xi, jet.y.into())
+                        [usize::from(jet.y)]
             })
             .sum::<C64>()
     });
@@ -158,7 +159,7 @@ fn jet_value(problem: &Problem, series: &[Vec<C64>], k: f64, jet: Jet, xi: f64) 
     };
     let order = usize::from(jet.y);
     let part = |of: fn(&C64) -> f64| {
-        derivative_values(&own.iter().map(of).collect::<Vec<f64>>(), xi, order)[order]
+        Series::new(own.iter().map(of).collect(), order).values(xi, order)[order]
     };
     symbol(problem, jet, k) * C64::new(part(|c| c.re), part(|c| c.im))
 }
