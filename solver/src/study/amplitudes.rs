@@ -19,6 +19,8 @@ use std::fmt;
 pub const HIGHEST: usize = 15;
 /// A solved problem nearer to singularity than this part of the slow rates is a small divisor.
 pub const SMALL: f64 = 5e-3;
+/// Small divisors that are named in words.
+pub const NAMED: usize = 4;
 /// Rounding errors of the data that a result is allowed to be wrong by, and the change of k that shows them.
 const ROUNDING: (f64, f64) = (32.0 * f64::EPSILON, 1e-6);
 /// The safety factor of differences that show rounding.
@@ -260,6 +262,7 @@ pub fn small_divisors(distances: &[Distance], slow_rate: f64) -> Vec<&Distance> 
             None => small.push(distance),
         }
     }
+    small.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     small
 }
 
@@ -467,9 +470,13 @@ impl fmt::Display for AmplitudesReport {
                 state.next_order
             )?;
         }
-        for divisor in self.small_divisors() {
-            let q: Vec<f64> = self.modes.iter().map(|(q, _)| *q).collect();
+        let q: Vec<f64> = self.modes.iter().map(|(q, _)| *q).collect();
+        let small = self.small_divisors();
+        for divisor in small.iter().take(NAMED) {
             writeln!(f, "  {}", divisor.in_words(&q))?;
+        }
+        if small.len() > NAMED {
+            writeln!(f, "  and {} more of them", small.len() - NAMED)?;
         }
         match &self.residual_order {
             Ok(order) => write!(

@@ -1,7 +1,7 @@
 //! A Landau point with everything that it rests on: what `point` prints.
 
 use super::accuracy::{Accuracy, Resonance, accuracy, resonance};
-use super::amplitudes::{check_order, errors, small_divisors};
+use super::amplitudes::{NAMED, check_order, errors, small_divisors};
 use super::{Setup, check_wavenumber, sensitivity};
 use crate::base::BaseState;
 use crate::error::{Error, Result};
@@ -383,8 +383,15 @@ impl fmt::Display for PointReport {
                 shown(waves.cross)
             )?;
         }
-        for divisor in &self.small_divisors {
+        for divisor in self.small_divisors.iter().take(NAMED) {
             write!(f, "\n  {divisor}")?;
+        }
+        if self.small_divisors.len() > NAMED {
+            write!(
+                f,
+                "\n  and {} more of them",
+                self.small_divisors.len() - NAMED
+            )?;
         }
         Ok(())
     }
