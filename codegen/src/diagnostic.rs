@@ -17,6 +17,7 @@ const WINDOW: usize = 60;
 pub struct SourceFile {
     /// Path as it appears in diagnostics.
     pub path: String,
+    /// Its text.
     pub text: String,
 }
 
@@ -25,12 +26,14 @@ pub struct SourceFile {
 pub struct Location {
     /// Index into the list of source files.
     pub file: usize,
+    /// Bytes from and to.
     pub range: Range<usize>,
 }
 
 /// One mistake.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
+    /// Where the spec says so.
     pub location: Location,
     /// What is wrong, in the user's words.
     pub message: String,
@@ -41,6 +44,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
+    /// Of the given parts.
     pub fn new(
         location: Location,
         message: impl Into<String>,
@@ -54,6 +58,7 @@ impl Diagnostic {
         }
     }
 
+    /// Adds a hint.
     pub fn hint(self, hint: impl Into<String>) -> Self {
         self.maybe_hint(Some(hint.into()))
     }
@@ -68,7 +73,9 @@ impl Diagnostic {
 /// All mistakes found in one run, with the sources they point into.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
+    /// Files that the messages point into.
     pub files: Vec<SourceFile>,
+    /// In the order of the text.
     pub list: Vec<Diagnostic>,
 }
 

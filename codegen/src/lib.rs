@@ -4,7 +4,7 @@
 //!
 //! | stage | module | from | to |
 //! |---|---|---|---|
-//! | parse | [`syntax`] | text | [`syntax::tree::ModelTree`] |
+//! | parse | `syntax` | text | `ModelTree` |
 //! | resolve | [`model`] | syntax tree | [`model::Model`], on one [`graph::Graph`] |
 //! | derive | [`mod@derive`] | checked model | [`derive::Derivation`]: L, L†, N2, N3, conditions |
 //! | lower | [`kernel`] | operators | [`kernel::ModelKernels`]: straight-line programs |
@@ -12,6 +12,8 @@
 //! | compare | [`errata`] | operators, a printed formula | [`errata::Comparison`], term by term |
 //!
 //! [`generate`] is the whole of it on a screen; [`build`] wraps it for a build script.
+
+#![warn(missing_docs)]
 
 pub mod build;
 pub mod derive;
@@ -21,7 +23,7 @@ pub mod errata;
 pub mod graph;
 pub mod kernel;
 pub mod model;
-pub mod syntax;
+mod syntax;
 
 use diagnostic::{Diagnostics, SourceFile};
 use landau_contract::TapeModel;
@@ -33,6 +35,7 @@ pub const ORDER: usize = 3;
 /// A spec and the law files it may import.
 #[derive(Clone, Debug)]
 pub struct Sources {
+    /// The text of the model.
     pub spec: SourceFile,
     /// Law files by name.
     pub laws: BTreeMap<String, SourceFile>,

@@ -9,6 +9,7 @@ use crate::graph::{Id, Node};
 /// A balance restricted to the base state.
 #[derive(Clone, Debug)]
 pub struct BaseRow {
+    /// Which balance, by position.
     pub balance: usize,
     /// With laws opaque.
     pub residual: Id,

@@ -14,22 +14,28 @@ use crate::model::{Closure, Condition, End};
 /// A condition on the adjoint field: Σ symbol · jets = 0, `jet.field` being a balance.
 #[derive(Clone, Debug)]
 pub struct AdjointCondition {
+    /// Where it holds.
     pub end: End,
+    /// Coefficients by jet.
     pub combination: Combination,
     /// The balance whose adjoint field it is solved for.
     pub balance: usize,
 }
 
+/// One combination of the structural switches.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// The choice of each structural switch.
     pub choices: Vec<usize>,
+    /// Its conditions.
     pub conditions: Vec<WallCondition>,
+    /// Conditions of the base state.
     pub base_conditions: Vec<BaseCondition>,
     /// Conditions that hold for fields of the base state in closed form: to be checked.
     pub base_checks: Vec<(End, Id)>,
     /// The adjoint boundary conditions, or why there are none.
     pub adjoint: Result<Vec<AdjointCondition>, String>,
+    /// What closes k = 0.
     pub closures: Vec<CaseClosure>,
 }
 

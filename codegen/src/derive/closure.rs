@@ -20,28 +20,38 @@ use num_traits::One;
 pub enum CaseClosure {
     /// ∫ density = 0; the multiplier enters the balances with the weights of `column`.
     Conserved {
+        /// Jets and weights of the integral.
         density: Vec<(Jet, Id)>,
+        /// Balances that the multiplier enters, with weights.
         column: Vec<(usize, Id)>,
     },
     /// The same, claimed by the spec: to be recognised in the collocated problem, or dropped.
     Claimed {
+        /// Jets and weights of the integral.
         density: Vec<(Jet, Id)>,
+        /// Balances that the multiplier enters, with weights.
         column: Vec<(usize, Id)>,
     },
     /// The constant of a field is arbitrary: ∫ field = 0.
     Gauge {
+        /// Which field, by position.
         field: usize,
+        /// Balances that the multiplier enters, with weights.
         column: Vec<(usize, Id)>,
     },
     /// The constant of a field with a time derivative is arbitrary, and may drift: ∫ field = 0, and the
     /// multiplier, which enters where the time derivative does, is the rate of the drift.
     Drift {
+        /// Which field, by position.
         field: usize,
+        /// Balances that the multiplier enters, with weights.
         column: Vec<(usize, Id)>,
     },
     /// The number `field` is unknown: ∫ density = 0.
     Unknown {
+        /// Which field, by position.
         field: usize,
+        /// Jets and weights of the integral.
         density: Vec<(Jet, Id)>,
     },
 }

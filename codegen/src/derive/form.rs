@@ -12,8 +12,10 @@ use std::collections::BTreeMap;
 /// A product of jets, sorted.
 pub type Monomial = Vec<Jet>;
 
+/// A polynomial in the perturbation with coefficients of the base state.
 #[derive(Clone, Default, Debug)]
 pub struct Form {
+    /// Coefficient by monomial.
     pub terms: BTreeMap<Monomial, Id>,
 }
 
@@ -116,6 +118,7 @@ impl Form {
         }
     }
 
+    /// Adds a multiple of another.
     pub fn add(&mut self, graph: &mut Graph, other: &Form, factor: &Rational) {
         for (monomial, coefficient) in &other.terms {
             let scaled = graph.scale(*coefficient, factor.clone());

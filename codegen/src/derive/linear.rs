@@ -10,8 +10,11 @@ use std::collections::BTreeMap;
 /// coefficient(y) · ∂(jet) in one row; `jet.field` is the column.
 #[derive(Clone, Copy, Debug)]
 pub struct Term {
+    /// Which row, by position.
     pub row: usize,
+    /// The derivative it multiplies.
     pub jet: Jet,
+    /// Its coefficient.
     pub coefficient: Id,
 }
 

@@ -41,7 +41,9 @@ const MOST_CASES: usize = 256;
 
 /// A model and what follows from it.
 pub struct Derivation {
+    /// What was derived from.
     pub model: Model,
+    /// What was derived.
     pub operators: Operators,
 }
 
@@ -65,6 +67,7 @@ pub struct Operators {
     pub adjoint_offsets: Offsets,
     /// The field that each balance determines.
     pub pairing: Vec<usize>,
+    /// Odd fields and balances, where the model has the mirror symmetry.
     pub parity: Option<Parity>,
     /// Balances that determine the base state, or have to hold for it.
     pub base: Vec<BaseRow>,

@@ -7,6 +7,7 @@ use crate::graph::{Graph, Id, Jet, LawAtom, Node, Operator, Variable};
 use crate::model::Law;
 use std::collections::HashMap;
 
+/// Replaces laws by their closed forms.
 pub struct Opener<'a> {
     laws: &'a [Law],
     closed: &'a [Option<Id>],
@@ -15,6 +16,7 @@ pub struct Opener<'a> {
 }
 
 impl<'a> Opener<'a> {
+    /// Of the given parts.
     pub fn new(laws: &'a [Law], closed: &'a [Option<Id>], uniform: &'a [bool]) -> Self {
         Opener {
             laws,

@@ -9,7 +9,9 @@ use super::form::Form;
 /// `true` is odd: the field (or balance) changes sign in the mirror.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parity {
+    /// In the order of their declaration.
     pub fields: Vec<bool>,
+    /// By balance.
     pub rows: Vec<bool>,
 }
 

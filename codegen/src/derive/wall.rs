@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 /// A condition on the perturbation: B(X⁰ + X') − B(X⁰) = 0.
 #[derive(Clone, Debug)]
 pub struct WallCondition {
+    /// Where it holds.
     pub end: End,
     /// Terms of degree 1 and higher.
     pub form: Form,
@@ -32,6 +33,7 @@ impl WallCondition {
 /// A condition on the base state.
 #[derive(Clone, Debug)]
 pub struct BaseCondition {
+    /// Where it holds.
     pub end: End,
     /// Vanishes at that end; laws opaque.
     pub residual: Id,

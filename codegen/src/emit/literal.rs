@@ -6,6 +6,7 @@ use quote::quote;
 
 /// A value that can be written out as Rust source.
 pub trait Literal {
+    /// The tokens.
     fn literal(&self) -> TokenStream;
 }
 

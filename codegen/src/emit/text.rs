@@ -8,8 +8,11 @@ use std::collections::BTreeMap;
 /// What `explain` can print.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Section {
+    /// The balances of the base state.
     Base,
+    /// L and M0.
     Linear,
+    /// L†, M0† and the adjoint conditions.
     Adjoint,
     /// N of this degree.
     Nonlinear(usize),
@@ -59,7 +62,9 @@ pub fn print(derivation: &Derivation, section: Section) -> String {
 
 /// A row of a typeset section.
 pub enum Typeset {
+    /// A title.
     Heading(String),
+    /// A sentence.
     Words(String),
     /// A displayed formula in LaTeX.
     Formula(String),

@@ -51,6 +51,7 @@ impl Subject {
 /// A printed formula.
 #[derive(Clone, Debug)]
 pub struct Formula {
+    /// What it is a formula of.
     pub subject: Subject,
     /// Its number, and its text in the notation of the spec; n0, p0_nT are base values.
     pub source: SourceFile,
@@ -61,8 +62,11 @@ pub struct Formula {
 /// One term that is not the same.
 #[derive(Clone, Debug)]
 pub struct Difference {
+    /// Which term.
     pub monomial: Monomial,
+    /// Its printed coefficient.
     pub printed: Option<Id>,
+    /// Its derived coefficient.
     pub derived: Option<Id>,
 }
 
@@ -71,6 +75,7 @@ pub struct Difference {
 pub struct Comparison {
     /// Terms that one of the two has.
     pub terms: usize,
+    /// Terms that differ.
     pub differences: Vec<Difference>,
 }
 

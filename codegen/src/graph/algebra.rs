@@ -10,62 +10,77 @@ const LARGEST_NUMBER: u64 = 4096;
 const MOST_TERMS: usize = 256;
 
 impl Graph {
+    /// A rational number.
     pub fn number(&mut self, value: Rational) -> Id {
         self.intern(Node::Number(value))
     }
 
+    /// A whole number.
     pub fn integer(&mut self, value: i64) -> Id {
         self.number(Rational::from_integer(value.into()))
     }
 
+    /// 0
     pub fn zero(&mut self) -> Id {
         self.integer(0)
     }
 
+    /// 1
     pub fn one(&mut self) -> Id {
         self.integer(1)
     }
 
+    /// π
     pub fn pi(&mut self) -> Id {
         self.intern(Node::Pi)
     }
 
+    /// A parameter by position.
     pub fn parameter(&mut self, index: usize) -> Id {
         self.intern(Node::Parameter(index))
     }
 
+    /// k
     pub fn wavenumber(&mut self) -> Id {
         self.intern(Node::Wavenumber)
     }
 
+    /// y
     pub fn coordinate(&mut self) -> Id {
         self.intern(Node::Coordinate)
     }
 
+    /// A derivative of a field.
     pub fn jet(&mut self, jet: Jet) -> Id {
         self.intern(Node::Jet(jet))
     }
 
+    /// ∂y^order of a base field.
     pub fn base(&mut self, field: usize, order: u8) -> Id {
         self.intern(Node::Base(field, order))
     }
 
+    /// A law of the full state.
     pub fn state_law(&mut self, atom: LawAtom) -> Id {
         self.intern(Node::StateLaw(atom))
     }
 
+    /// A law of the base state.
     pub fn base_law(&mut self, atom: LawAtom) -> Id {
         self.intern(Node::BaseLaw(atom))
     }
 
+    /// An argument of a polarised form.
     pub fn slot(&mut self, array: usize, position: usize) -> Id {
         self.intern(Node::Slot(array, position))
     }
 
+    /// A derivative of an expression, not yet carried out.
     pub fn derivative(&mut self, operator: Operator, argument: Id) -> Id {
         self.intern(Node::Derivative(operator, argument))
     }
 
+    /// The number that it is, if it is one.
     pub fn as_number(&self, id: Id) -> Option<&Rational> {
         match self.node(id) {
             Node::Number(value) => Some(value),
@@ -73,6 +88,7 @@ impl Graph {
         }
     }
 
+    /// Whether it is the number 0.
     pub fn is_zero(&self, id: Id) -> bool {
         self.as_number(id).is_some_and(Zero::is_zero)
     }
@@ -105,18 +121,22 @@ impl Graph {
         }
     }
 
+    /// a + b
     pub fn add(&mut self, a: Id, b: Id) -> Id {
         self.sum([(a, Rational::one()), (b, Rational::one())])
     }
 
+    /// a − b
     pub fn sub(&mut self, a: Id, b: Id) -> Id {
         self.sum([(a, Rational::one()), (b, -Rational::one())])
     }
 
+    /// −a
     pub fn neg(&mut self, a: Id) -> Id {
         self.scale(a, -Rational::one())
     }
 
+    /// factor · a
     pub fn scale(&mut self, a: Id, factor: Rational) -> Id {
         self.sum([(a, factor)])
     }
@@ -184,14 +204,17 @@ impl Graph {
         self.scale(product, number)
     }
 
+    /// a b
     pub fn mul(&mut self, a: Id, b: Id) -> Id {
         self.product([(a, Rational::one()), (b, Rational::one())])
     }
 
+    /// a / b
     pub fn div(&mut self, a: Id, b: Id) -> Id {
         self.product([(a, Rational::one()), (b, -Rational::one())])
     }
 
+    /// base^exponent
     pub fn pow(&mut self, base: Id, exponent: Rational) -> Id {
         self.product([(base, exponent)])
     }
@@ -295,6 +318,7 @@ impl Graph {
         self.product(common)
     }
 
+    /// function(argument)
     pub fn call(&mut self, function: Function, argument: Id) -> Id {
         if self.is_zero(argument) {
             match function {

@@ -8,6 +8,7 @@ pub use num_rational::BigRational as Rational;
 /// `LawAtom { law: p, index: [2, 0, …], y: 1 }`.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct LawAtom {
+    /// Which law, by position.
     pub law: usize,
     /// Partial derivatives with respect to each field.
     pub index: Vec<u8>,
@@ -35,8 +36,11 @@ impl LawAtom {
 /// One expression; children are ids of the same graph.
 #[derive(Clone, PartialEq, Eq, Hash, Debug)]
 pub enum Node {
+    /// An exact rational number.
     Number(Rational),
+    /// π
     Pi,
+    /// A parameter by position.
     Parameter(usize),
     /// The wavenumber of the fundamental (in the amplitude alone).
     Wavenumber,
@@ -54,6 +58,7 @@ pub enum Node {
     Sum(Rational, Vec<(Id, Rational)>),
     /// Π base^exponent, bases in id order, exponents nonzero.
     Product(Vec<(Id, Rational)>),
+    /// A function of one argument.
     Call(Function, Id),
     /// One branch a choice of the switch parameter.
     Select(usize, Vec<Id>),

@@ -20,13 +20,21 @@ pub trait Notation {
     fn letter(&self, name: &str) -> String;
     /// A number that is not negative.
     fn number(&self, value: &Rational) -> String;
+    /// above/below
     fn fraction(&self, above: &str, below: &[String]) -> String;
+    /// base^exponent
     fn power(&self, base: &str, exponent: &Rational) -> String;
+    /// √of
     fn root(&self, of: &str) -> String;
+    /// function(argument)
     fn call(&self, function: &str, argument: &str) -> String;
+    /// (inside)
     fn brackets(&self, inside: &str) -> String;
+    /// The same in square brackets.
     fn square_brackets(&self, inside: &str) -> String;
+    /// One of several, by a switch.
     fn choice(&self, switch: &str, branches: &[String]) -> String;
+    /// ∫ integrand d(variable)
     fn integral(&self, integrand: &str, variable: &str) -> String;
 }
 

@@ -5,12 +5,19 @@ use num_traits::{One, Signed};
 
 /// Names for the atoms of a graph.
 pub struct Printer<'a> {
+    /// Every expression of the model.
     pub graph: &'a Graph,
+    /// In the order of their declaration.
     pub fields: &'a [String],
+    /// In the order of their declaration.
     pub parameters: &'a [String],
+    /// In the order of their declaration.
     pub laws: &'a [String],
+    /// Name of the periodic coordinate.
     pub periodic: &'a str,
+    /// Name of the cross-stream coordinate.
     pub coordinate: &'a str,
+    /// How it is written.
     pub notation: &'a dyn Notation,
 }
 

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 
 /// Where the leaves of expressions come from.
 pub struct Lowering<'a> {
+    /// What the leaves are read from.
     pub inputs: Vec<Array>,
     /// Array and position of a leaf; `None` for a leaf the kernel does not have.
     pub locate: &'a dyn Fn(&Node) -> Option<(usize, usize)>,

@@ -20,20 +20,33 @@ use crate::graph::{Graph, Id, Notation, Printer};
 
 /// A model whose form has been checked as far as names go.
 pub struct Model {
+    /// As it is declared.
     pub name: String,
+    /// In words.
     pub title: String,
+    /// Every expression of the model.
     pub graph: Graph,
     /// Name of the periodic coordinate.
     pub periodic: String,
+    /// The cross-stream coordinate, where there is one.
     pub interval: Option<Interval>,
+    /// In the order of their declaration.
     pub parameters: Vec<Parameter>,
+    /// In the order of their declaration.
     pub fields: Vec<Field>,
+    /// In the order of their declaration.
     pub laws: Vec<Law>,
+    /// In the order of their declaration.
     pub balances: Vec<Balance>,
+    /// The base state.
     pub base: Base,
+    /// Boundary conditions of all cases.
     pub boundary: Vec<Condition>,
+    /// What closes the problem at k = 0.
     pub mean: Vec<Closure>,
+    /// What the amplitude measures.
     pub amplitude: Amplitude,
+    /// Output functionals.
     pub outputs: Vec<Output>,
     /// Where the model does what it is there for.
     pub typical: Option<Typical>,
@@ -44,6 +57,7 @@ pub struct Model {
 }
 
 impl Model {
+    /// Names of the fields.
     pub fn field_names(&self) -> Vec<String> {
         self.fields.iter().map(|f| f.name.clone()).collect()
     }
@@ -67,6 +81,7 @@ impl Model {
 
 /// Names of fields, parameters, laws and the coordinates.
 pub struct Lettering {
+    /// In the order of their declaration.
     pub fields: Vec<String>,
     parameters: Vec<String>,
     laws: Vec<String>,
@@ -92,14 +107,19 @@ impl Lettering {
 /// A wavenumber that shows what a model is about, and the eigenvalue that its mode is near to.
 #[derive(Clone, Copy, Debug)]
 pub struct Typical {
+    /// Wavenumber.
     pub k: f64,
+    /// Real and imaginary part of a nearby eigenvalue.
     pub near: Option<[f64; 2]>,
 }
 
 /// The cross-stream coordinate.
 pub struct Interval {
+    /// As it is declared.
     pub name: String,
+    /// The lower bound.
     pub lower: Id,
+    /// The upper bound.
     pub upper: Id,
     /// The ends as the user wrote them.
     pub written: [String; 2],
@@ -128,95 +148,151 @@ impl Interval {
     }
 }
 
+/// A parameter of the model.
 #[derive(Clone)]
 pub struct Parameter {
+    /// As it is declared.
     pub name: String,
+    /// In words.
     pub doc: String,
+    /// Its value where none is set.
     pub default: f64,
+    /// The lower bound.
     pub lower: f64,
+    /// The upper bound.
     pub upper: f64,
     /// Names of the values of a switch; empty for a number.
     pub choices: Vec<String>,
+    /// Where the spec says so.
     pub location: Location,
 }
 
+/// A field of the model.
 pub struct Field {
+    /// As it is declared.
     pub name: String,
+    /// In words.
     pub doc: String,
     /// Where the base state must lie.
     pub lower: f64,
+    /// The upper bound.
     pub upper: f64,
     /// An unknown number, constant in x and y, rather than a profile.
     pub uniform: bool,
+    /// Where the spec says so.
     pub location: Location,
 }
 
 /// An opaque function of the fields, the coordinate and the parameters.
 pub struct Law {
+    /// As it is declared.
     pub name: String,
+    /// In words.
     pub doc: String,
+    /// The expression.
     pub body: Id,
 }
 
 /// left − right of a balance, divided (if asked) by a base-state quantity.
 pub struct Balance {
+    /// As it is declared.
     pub name: String,
+    /// In words.
     pub doc: String,
     /// In terms of the full state, derivatives not yet carried out.
     pub residual: Id,
+    /// What the balance is divided by.
     pub divisor: Option<Id>,
+    /// The field that it is for, by position.
     pub paired_field: Option<usize>,
+    /// Where the spec says so.
     pub location: Location,
 }
 
 /// left − right of a condition at one end.
 #[derive(Clone)]
 pub struct Condition {
+    /// Where it holds.
     pub end: End,
+    /// Left side minus right side.
     pub residual: Id,
     /// Switches and the choices under which the condition holds.
     pub guard: Vec<(usize, usize)>,
+    /// Where the spec says so.
     pub location: Location,
 }
 
 /// ∫ integrand dy = value.
 #[derive(Clone)]
 pub struct Integral {
+    /// What is integrated.
     pub integrand: Id,
+    /// What it has to be.
     pub value: Id,
+    /// Where the spec says so.
     pub location: Location,
 }
 
+/// What the spec says of the base state.
 pub struct Base {
     /// Closed form of each field, where the spec gives one.
     pub closed: Vec<Option<Id>>,
+    /// A start for each field that is solved for.
     pub guesses: Vec<Option<Id>>,
+    /// Its conditions.
     pub conditions: Vec<Condition>,
+    /// Prescribed integrals.
     pub integrals: Vec<Integral>,
     /// Conditions that determine a parameter set to `auto`.
     pub automatic: Vec<(usize, Condition)>,
+    /// Where the spec says so.
     pub location: Location,
 }
 
 /// What closes the problem at k = 0.
 #[derive(Clone)]
 pub enum Closure {
-    Conserved { integrand: Id, location: Location },
-    Gauge { field: usize, location: Location },
-    Unknown { field: usize, integral: Integral },
+    /// An integral that does not change.
+    Conserved {
+        /// What is integrated.
+        integrand: Id,
+        /// Where the spec says so.
+        location: Location,
+    },
+    /// A field that is determined up to a constant.
+    Gauge {
+        /// Which field, by position.
+        field: usize,
+        /// Where the spec says so.
+        location: Location,
+    },
+    /// A number with a condition of its own.
+    Unknown {
+        /// Which field, by position.
+        field: usize,
+        /// Its condition.
+        integral: Integral,
+    },
 }
 
+/// What the amplitude measures.
 pub enum Amplitude {
     /// ∫ Σ weight |field|² = value
     Integral {
+        /// One a field.
         weights: Vec<Weight>,
+        /// What it has to be.
         value: Id,
+        /// As the spec writes it.
         written: String,
     },
     /// |field| = |value| at a place
     Point {
+        /// Which field, by position.
         field: usize,
+        /// Where, if not everywhere.
         place: Option<Id>,
+        /// What it has to be.
         value: Id,
         /// Place and value as the user wrote them.
         written: [String; 2],
@@ -225,16 +301,24 @@ pub enum Amplitude {
 
 /// weight |field|², the weight also as the user wrote it; nothing for 1.
 pub struct Weight {
+    /// Which field, by position.
     pub field: usize,
+    /// Its weight.
     pub weight: Id,
+    /// As the spec writes it.
     pub written: String,
 }
 
+/// An output functional.
 pub struct Output {
+    /// As it is declared.
     pub name: String,
+    /// In words.
     pub doc: String,
     /// `None` for an integral over the interval.
     pub place: Option<Id>,
+    /// The expression.
     pub body: Id,
+    /// Where the spec says so.
     pub location: Location,
 }

@@ -2,6 +2,8 @@
 //!
 //! Exit status 0: an answer. 2: bad input. 3: a computation without an answer.
 
+#![warn(missing_docs)]
+
 /// Prints a line; a reader that has gone away is no error.
 macro_rules! say {
     ($($argument:tt)*) => {{

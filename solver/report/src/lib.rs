@@ -3,6 +3,8 @@
 //! [`library`] (built models, and others from their files) → [`reproduce`] (a study file, worked through) →
 //! [`figure`] (SVG), [`data`] (npz, NetCDF, VTK).
 
+#![warn(missing_docs)]
+
 pub mod data;
 pub mod figure;
 pub mod library;

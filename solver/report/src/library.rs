@@ -9,6 +9,7 @@ use std::path::Path;
 
 /// The models of a crate.
 pub struct Library {
+    /// In the order of their names.
     pub models: Vec<Box<dyn Model>>,
 }
 

@@ -11,15 +11,21 @@ use std::path::Path;
 
 /// A labelled array over some of the axes, the last varying fastest.
 pub struct Array {
+    /// As it is declared.
     pub name: String,
+    /// Positions of its axes, the last varying fastest.
     pub axes: Vec<usize>,
+    /// Its numbers.
     pub values: Vec<f64>,
 }
 
 /// Axes, arrays over them, and attributes.
 pub struct Dataset {
+    /// Name and text.
     pub attributes: Vec<(String, String)>,
+    /// Positions of its axes, the last varying fastest.
     pub axes: Vec<(String, Vec<f64>)>,
+    /// What there is.
     pub arrays: Vec<Array>,
 }
 

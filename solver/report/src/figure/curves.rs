@@ -12,8 +12,11 @@ const NEEDLE: usize = 12;
 /// How a curve is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
+    /// Joined.
     Line,
+    /// Joined by dashes.
     Dashed,
+    /// Not joined.
     Dots,
 }
 
@@ -22,23 +25,31 @@ pub enum Style {
 pub struct Curve {
     /// Empty: not in the legend.
     pub label: String,
+    /// Places and values.
     pub points: Vec<(f64, f64)>,
+    /// How it is drawn.
     pub style: Style,
 }
 
 /// One pair of axes.
 #[derive(Clone, Debug)]
 pub struct Panel {
+    /// What stands above it.
     pub title: String,
+    /// Along x.
     pub x: String,
+    /// Along y.
     pub y: String,
+    /// Whether each axis is.
     pub logarithmic: [bool; 2],
+    /// In the order in which they are drawn.
     pub curves: Vec<Curve>,
     /// Where curves jump through infinity.
     pub poles: Vec<f64>,
 }
 
 impl Panel {
+    /// Without curves.
     pub fn new(title: &str, x: &str, y: &str) -> Self {
         let [title, x, y] = [title, x, y].map(str::to_owned);
         Panel {
@@ -51,6 +62,7 @@ impl Panel {
         }
     }
 
+    /// Adds a curve.
     pub fn curve(&mut self, label: &str, style: Style, points: Vec<(f64, f64)>) {
         let label = label.to_owned();
         self.curves.push(Curve {

@@ -15,11 +15,17 @@ const MARGIN: [f64; 2] = [170.0, 110.0];
 
 /// One picture of the plane; arrays are `[y][x]`.
 pub struct Plane<'a> {
+    /// What stands above it.
     pub title: String,
+    /// Of both axes.
     pub labels: [String; 2],
+    /// Along x.
     pub x: &'a [f64],
+    /// Along y.
     pub y: &'a [f64],
+    /// Name and values that are shaded.
     pub shade: (&'a str, &'a [Vec<f64>]),
+    /// Components along and across.
     pub arrows: Option<[&'a [Vec<f64>]; 2]>,
 }
 

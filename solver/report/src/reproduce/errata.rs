@@ -103,10 +103,13 @@ impl Verdict {
 
 /// A formula with what came of the comparison.
 pub struct Judgement {
+    /// Its number in the source.
     pub number: String,
     /// What the formula is about, in words.
     pub about: String,
+    /// As it is printed.
     pub printed: String,
+    /// What is wrong in it, named.
     pub slips: Vec<Slip>,
     /// Terms of either side.
     pub terms: usize,

@@ -26,10 +26,13 @@ use study::{Case, Task};
 
 /// Where a study is worked on.
 pub struct Workshop<'a> {
+    /// Models at hand.
     pub library: &'a Library,
+    /// What is worked through.
     pub study: &'a Study,
     /// Folder of the study file: models by path stand relative to it.
     pub home: PathBuf,
+    /// Folder of the report.
     pub out: PathBuf,
 }
 

@@ -10,17 +10,21 @@ use std::path::Path;
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Study {
+    /// Of the report.
     pub title: String,
     /// What is reproduced: a citation.
     pub source: String,
     /// A built model, or a path relative to the study file.
     pub model: String,
+    /// M
     #[serde(default = "fifty")]
     pub resolution: usize,
+    /// The first paragraph.
     #[serde(default)]
     pub introduction: String,
     /// A file of printed formulas to compare with the derivation, relative to the study file.
     pub errata: Option<String>,
+    /// Its sections.
     pub figure: Vec<Figure>,
 }
 
