@@ -2,7 +2,6 @@
 //! runs, and what the solver runs on numbers of its own, the same operations in the same order.
 
 use crate::jet::Function;
-use crate::model::choose;
 use crate::number::Number;
 use crate::structure::{KernelId, ResidualId, Structure};
 use std::borrow::Cow;
@@ -142,6 +141,12 @@ pub fn apply<T: Number>(function: Function, x: T) -> T {
         Function::Tanh => x.tanh(),
         Function::Atan => x.atan(),
     }
+}
+
+/// The branch that a switch parameter selects (emitted code calls this).
+pub fn choose<T: Clone>(switch: f64, branches: &[T]) -> T {
+    let last = branches.len() - 1;
+    branches[(switch.max(0.0).round() as usize).min(last)].clone()
 }
 
 /// The kernels of a model with their structure.

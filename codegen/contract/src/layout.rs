@@ -1,5 +1,4 @@
-//! What stands where: the point state that kernels read, and their outputs one after another. The generator writes
-//! and the solver reads through this file alone.
+//! The outputs of kernels, one after another: the generator writes and the solver reads through this file alone.
 
 use crate::jet::{End, Jet};
 use crate::structure::{
@@ -305,94 +304,6 @@ pub fn output_length(structure: &Structure, kernel: KernelId) -> usize {
     }
 }
 
-/// Positions in the point state
-/// `[y, k, parameters…, base field 0 and its y-derivatives to base_order, base field 1, …]`.
-#[derive(Clone, Copy, Debug)]
-pub struct StateLayout {
-    parameters: usize,
-    fields: usize,
-    /// Derivatives kept of each base field.
-    base_order: usize,
-}
-
-impl StateLayout {
-    /// The layout for so many parameters and fields, with base derivatives to `base_order`.
-    pub fn new(parameters: usize, fields: usize, base_order: usize) -> Self {
-        StateLayout {
-            parameters,
-            fields,
-            base_order,
-        }
-    }
-
-    /// Number of elements.
-    pub fn length(&self) -> usize {
-        2 + self.parameters + self.fields * (self.base_order + 1)
-    }
-
-    /// Of y.
-    pub fn coordinate(&self) -> usize {
-        0
-    }
-
-    /// Of k.
-    pub fn wavenumber(&self) -> usize {
-        1
-    }
-
-    /// Of a parameter.
-    pub fn parameter(&self, index: usize) -> usize {
-        2 + index
-    }
-
-    /// Of ∂y^order of a base field.
-    pub fn base(&self, field: usize, order: usize) -> usize {
-        2 + self.parameters + field * (self.base_order + 1) + order
-    }
-}
-
-/// The state at one point, made element by element.
-#[derive(Clone, Debug)]
-pub struct PointState {
-    layout: StateLayout,
-    values: Vec<f64>,
-}
-
-impl PointState {
-    /// At a place, for a wavenumber, with parameters; the base fields are zero.
-    pub fn new(layout: StateLayout, y: f64, k: f64, parameters: &[f64]) -> Self {
-        let mut values = vec![0.0; layout.length()];
-        values[layout.coordinate()] = y;
-        values[layout.wavenumber()] = k;
-        for (index, value) in parameters.iter().enumerate() {
-            values[layout.parameter(index)] = *value;
-        }
-        PointState { layout, values }
-    }
-
-    /// Fills in the fields in closed form: the outputs of [`KernelId::Closed`].
-    pub fn set_closed(&mut self, closed: &[f64]) {
-        let first = self.layout.base(0, 0);
-        self.values[first..].copy_from_slice(closed);
-    }
-
-    /// Sets ∂y^order of a base field.
-    pub fn set_base(&mut self, field: usize, order: usize, value: f64) {
-        let position = self.layout.base(field, order);
-        self.values[position] = value;
-    }
-
-    /// What kernels read.
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-
-    /// What kernels read, as it is kept.
-    pub fn into_values(self) -> Vec<f64> {
-        self.values
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -429,14 +340,5 @@ mod tests {
             read_measure(&info, &measure),
             Measure::Point { value, place } if (value, place) == (2.0, 0.5)
         ));
-    }
-
-    #[test]
-    fn the_state_holds_every_element_once() {
-        let layout = StateLayout::new(3, 2, 2);
-        let mut positions = vec![layout.coordinate(), layout.wavenumber()];
-        positions.extend((0..3).map(|i| layout.parameter(i)));
-        positions.extend((0..2).flat_map(|f| (0..=2).map(move |o| layout.base(f, o))));
-        assert_eq!(positions, (0..layout.length()).collect::<Vec<_>>());
     }
 }

@@ -40,9 +40,3 @@ pub fn evaluate(model: &dyn Model, kernel: KernelId, point: &[f64]) -> Vec<f64> 
     model.evaluate(kernel, point, &mut out);
     out
 }
-
-/// The branch that a switch parameter selects (emitted code calls this).
-pub fn choose<T: Clone>(switch: f64, branches: &[T]) -> T {
-    let last = branches.len() - 1;
-    branches[(switch.max(0.0).round() as usize).min(last)].clone()
-}

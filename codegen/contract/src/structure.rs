@@ -4,7 +4,7 @@
 //! runs from its tape.
 
 use crate::jet::{End, Jet};
-use crate::layout::StateLayout;
+use crate::state::StateLayout;
 
 /// Everything about a model that is not a kernel.
 #[derive(Clone, Debug, PartialEq)]

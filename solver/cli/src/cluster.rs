@@ -1,9 +1,9 @@
 //! One sweep on many machines: shares of it, merged; scripts for Slurm and HyperQueue.
 
 use crate::arguments::{Common, Engine, MergeOptions, SweepOptions};
+use crate::asked::resumed;
 use crate::interrupt;
 use crate::progress::Bar;
-use crate::solve::resumed;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{destination, write_whole};
 use landau_solver::study::shard::{self, Share};

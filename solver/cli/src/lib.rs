@@ -13,6 +13,7 @@ macro_rules! say {
 }
 
 mod arguments;
+mod asked;
 mod cluster;
 mod inspect;
 mod interrupt;

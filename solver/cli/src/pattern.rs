@@ -1,7 +1,7 @@
 //! The command `pattern`: pictures and data of the fields over the plane.
 
 use crate::arguments::{Common, PatternOptions};
-use crate::solve::asked;
+use crate::asked::asked;
 use landau_report::data::FORMATS;
 use landau_report::data::plane::{attributes, dataset};
 use landau_report::figure::{pattern_lines, pattern_pair};

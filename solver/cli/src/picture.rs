@@ -1,7 +1,7 @@
 //! Pictures of answers, and what is stored beside them; the table of a sweep.
 
 use crate::arguments::Common;
-use crate::solve::asked;
+use crate::asked::asked;
 use landau_report::data::plane::{attributes, modes as dataset};
 use landau_report::figure;
 use landau_report::figure::{Panel, Style, panels};

@@ -1,48 +1,23 @@
 //! Commands that compute.
 
 use crate::arguments::{Common, CriticalOptions, Of, SweepOptions, range};
+use crate::asked::{asked, resumed};
 use crate::progress::Bar;
 use crate::{cluster, interrupt, picture};
 use landau_report::figure;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{destination, write_whole};
-use landau_solver::model::C64;
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{Quantity, Question};
 use landau_solver::study::minimise::minimise;
 use landau_solver::study::point::PointReport;
 use landau_solver::study::spectrum::SpectrumReport;
-use landau_solver::study::sweep::{Range, Resumed, Sweep};
+use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::verify::Certificate;
 use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality};
-use landau_solver::weakly::Selection;
 use landau_solver::words;
 use serde_json::{Map, json};
 use std::path::Path;
-
-/// The wavenumber and the mode that are asked for, or those that the model calls typical.
-///
-/// # Errors
-/// No wavenumber from either.
-pub fn asked(setup: &Setup, k: Option<f64>, common: &Common) -> Result<(f64, Selection<'static>)> {
-    let structure = setup.model.structure();
-    let typical = structure.typical.as_ref();
-    let own = |near: &[f64]| match near {
-        [re, im] => Some(C64::new(*re, *im)),
-        _ => None,
-    };
-    let (k, near) = match (k, typical) {
-        (Some(k), _) => (k, common.near),
-        (None, Some(typical)) => (typical.k, common.near.or(own(&typical.near))),
-        (None, None) => {
-            return Err(Error::input(format!(
-                "give the wavenumber with --k: the model `{}` names no typical one",
-                structure.name
-            )));
-        }
-    };
-    Ok((k, near.map_or(Selection::Leading, Selection::Near)))
-}
 
 pub fn base(setup: &Setup, points: usize, plot: Option<&Path>, common: &Common) -> Result<()> {
     if !(2..=100_000).contains(&points) {
@@ -339,22 +314,6 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
         )));
     }
     Ok(())
-}
-
-/// Says what an earlier run has left.
-pub fn resumed(found: Resumed) {
-    if found.taken > 0 {
-        eprintln!(
-            "resumed: {} rows are taken from an interrupted run",
-            found.taken
-        );
-    }
-    if found.damaged > 0 {
-        eprintln!(
-            "note: {} lines of its journal do not fit and are computed again",
-            found.damaged
-        );
-    }
 }
 
 pub fn verify(setup: &Setup, k: Option<f64>, order: usize, common: &Common) -> Result<()> {

@@ -20,6 +20,10 @@ const ROUNDINGS: f64 = 32.0;
 /// Safety factors of two differences that show rounding, which is as good as random.
 const SAFETY: f64 = 5.0;
 
+/// A second-order problem that is nearer to singularity than this, relative to the slow rates, has no answer
+/// that rounding leaves standing.
+pub const SINGULAR: f64 = 1e-8;
+
 /// Absolute errors of c0 and c2.
 #[derive(Clone, Copy, Debug)]
 pub struct Accuracy {
@@ -119,4 +123,13 @@ pub fn resonance(point: &LandauPoint) -> Result<Resonance> {
         mean_flow,
         second_harmonic: second.distance(2.0 * point.c0),
     })
+}
+
+/// What a distance from singularity is small or large against: the slow eigenvalues, or the terms of the slowest
+/// balance where there are too few of them to tell.
+pub fn slow_rate(point: &LandauPoint) -> f64 {
+    let pair = &point.pair;
+    let rate = point.problem.rate(pair.k);
+    let floor = if rate.is_finite() { rate } else { 0.0 };
+    pair.scale.max(pair.c.norm()).max(floor)
 }

@@ -1,5 +1,6 @@
 //! Amplitude equations of any modes, with everything that they rest on: what `amplitudes` prints.
 
+use super::orders::HIGHEST;
 use super::verify::residual_order;
 use super::{Setup, check_wavenumber};
 use crate::base::BaseState;
@@ -15,8 +16,6 @@ use crate::words;
 use serde_json::{Value, json};
 use std::fmt;
 
-/// The highest order that is offered: coefficients beyond it are rounding.
-pub const HIGHEST: usize = 15;
 /// A solved problem nearer to singularity than this part of the slow rates is a small divisor.
 pub const SMALL: f64 = 5e-3;
 /// Small divisors that are named in words.
@@ -25,19 +24,6 @@ pub const NAMED: usize = 4;
 const ROUNDING: (f64, f64) = (32.0 * f64::EPSILON, 1e-6);
 /// The safety factor of differences that show rounding.
 const SAFETY: f64 = 5.0;
-
-/// Refuses an order that one mode has no coefficient of.
-///
-/// # Errors
-/// An even order, or one out of range.
-pub fn check_order(order: usize) -> Result<()> {
-    if !order.is_multiple_of(2) && (3..=HIGHEST).contains(&order) {
-        return Ok(());
-    }
-    Err(Error::input(format!(
-        "--order {order} is not available: it accepts odd numbers from 3 to {HIGHEST}"
-    )))
-}
 
 /// A mode that is asked for.
 #[derive(Clone, Copy, Debug)]

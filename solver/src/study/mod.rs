@@ -8,6 +8,7 @@ pub use journal::journal_path;
 pub use progress::{Progress, Silent};
 pub mod minimise;
 pub mod modes;
+pub mod orders;
 pub mod point;
 mod progress;
 pub mod quadrature;

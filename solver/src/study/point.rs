@@ -1,7 +1,8 @@
 //! A Landau point with everything that it rests on: what `point` prints.
 
-use super::accuracy::{Accuracy, Resonance, accuracy, resonance};
-use super::amplitudes::{NAMED, check_order, errors, small_divisors};
+use super::accuracy::{Accuracy, Resonance, SINGULAR, accuracy, resonance, slow_rate};
+use super::amplitudes::{NAMED, errors, small_divisors};
+use super::orders::check_order;
 use super::{Setup, check_wavenumber, sensitivity};
 use crate::base::BaseState;
 use crate::error::{Error, Result};
@@ -20,9 +21,6 @@ use std::fmt;
 pub const UNCONVERGED: f64 = 0.05;
 /// Below this part of what it is the sum of, a coefficient counts as a computed zero.
 const CANCELLED: f64 = 1e-6;
-/// A second-order problem that is nearer to singularity than this, relative to the slow rates, has no answer
-/// that rounding leaves standing.
-pub const SINGULAR: f64 = 1e-8;
 
 /// c0, c2 and what belongs to them at one wavenumber; owns its data.
 #[derive(Clone, Debug)]
@@ -266,15 +264,6 @@ fn waves(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Option<
     let system = Expansion::to(point.problem, pairs.to_vec(), 2)?.last_coefficients();
     let errors = errors(setup, base, point.problem, &pairs, &system)?;
     Ok(Some(Waves::of(&system, &errors[0])))
-}
-
-/// What a distance from singularity is small or large against: the slow eigenvalues, or the terms of the slowest
-/// balance where there are too few of them to tell.
-pub fn slow_rate(point: &LandauPoint) -> f64 {
-    let pair = &point.pair;
-    let rate = point.problem.rate(pair.k);
-    let floor = if rate.is_finite() { rate } else { 0.0 };
-    pair.scale.max(pair.c.norm()).max(floor)
 }
 
 /// Second-order problems that are singular to working precision, named.

@@ -4,8 +4,8 @@ mod adjointness;
 mod forms;
 mod order;
 
-use super::accuracy::{accuracy, resonance};
-use super::amplitudes::check_order;
+use super::accuracy::{SINGULAR, accuracy, resonance, slow_rate};
+use super::orders::check_order;
 use super::quadrature::{adjoint_mode, second_landau};
 use super::{Setup, check_wavenumber};
 use crate::base::BaseState;
@@ -13,7 +13,6 @@ use crate::collocation::coefficients;
 use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::series::Monomial;
-use crate::study::point::{SINGULAR, slow_rate};
 use crate::weakly::{Expansion, LandauPoint, Selection};
 use crate::words;
 use serde_json::{Value, json};

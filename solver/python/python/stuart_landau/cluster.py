@@ -9,15 +9,12 @@ import csv
 import pickle
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ._core import Core
 
-if TYPE_CHECKING:
-    from .model import Model
 
-
-def run(client: Any, model: Model, assignment: tuple[Any, ...], out: Path, tasks: int, cpus: int) -> None:
+def run(client: Any, model: Any, assignment: tuple[Any, ...], out: Path, tasks: int, cpus: int) -> None:
     """Submits the shares of a sweep, waits for them, and puts them together."""
     from hyperqueue import Job
     from hyperqueue.task.task import ResourceRequest

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 import html
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from .model import Model
 
 
 def _complex(pair: list[float | None]) -> complex:
@@ -36,7 +33,7 @@ def _latex(value: complex) -> str:
 class Result:
     """An answer; `data` is the object that the command line prints with --json."""
 
-    def __init__(self, model: Model, data: Any) -> None:
+    def __init__(self, model: Any, data: Any) -> None:
         self.model = model
         self.data = data
 
@@ -94,7 +91,7 @@ def _xarray() -> Any:
 class Base(Result):
     """A base state. `y`: heights, in units of length of the model; `profiles`: values by field."""
 
-    def __init__(self, model: Model, data: dict[str, Any]) -> None:
+    def __init__(self, model: Any, data: dict[str, Any]) -> None:
         super().__init__(model, data)
         self.parameters: dict[str, Any] = data["parameters"]
         self.y = _array(data["y"])
@@ -131,7 +128,7 @@ class Spectrum(Result):
     """`direct`, `adjoint`: eigenvalues in units of 1/time, adjoint ones by their conjugates (None without adjoint
     conditions)."""
 
-    def __init__(self, model: Model, data: dict[str, Any]) -> None:
+    def __init__(self, model: Any, data: dict[str, Any]) -> None:
         super().__init__(model, data)
         self.k: float = data["k"]
         self.direct = np.array([_complex(c) for c in data["direct"]])
@@ -158,7 +155,7 @@ class Spectrum(Result):
 class Point(Result):
     """A Landau point. `c0`, `c2`, … (`coefficients`): dA/dt = a0 A + a2 A³ + …; `error`: absolute, by coefficient."""
 
-    def __init__(self, model: Model, data: dict[str, Any]) -> None:
+    def __init__(self, model: Any, data: dict[str, Any]) -> None:
         super().__init__(model, data)
         self.k: float = data["k"]
         self.parameters: dict[str, Any] = data["parameters"]
@@ -215,7 +212,7 @@ class Point(Result):
 class Modes(Result):
     """Profiles of the modes. `y`: heights; `modes[name][field]`: complex values; of X† by balance."""
 
-    def __init__(self, model: Model, data: dict[str, Any]) -> None:
+    def __init__(self, model: Any, data: dict[str, Any]) -> None:
         super().__init__(model, data)
         self.y = _array(data["y"])
         self.modes = {
@@ -245,7 +242,7 @@ class Modes(Result):
 class Amplitudes(Result):
     """dz_j/dt = Σ g z^p z̄^s. `equations[j]`: terms with `z`, `conj`, `g`, `error`; `equilibria`: states up to phase."""
 
-    def __init__(self, model: Model, data: dict[str, Any]) -> None:
+    def __init__(self, model: Any, data: dict[str, Any]) -> None:
         super().__init__(model, data)
         self.order: int = data["order"]
         #: Wavenumber and eigenvalue of each mode.
@@ -307,7 +304,7 @@ def _monomial(term: dict[str, Any], latex: bool = False) -> str:
 class Critical(Result):
     """The first critical point (`value`, `error`, `k`, `c0`); `all` has every one of the interval."""
 
-    def __init__(self, model: Model, data: list[dict[str, Any]]) -> None:
+    def __init__(self, model: Any, data: list[dict[str, Any]]) -> None:
         super().__init__(model, data)
         self.all = data
         self.parameter: str = data[0]["parameter"]
@@ -326,7 +323,7 @@ class Critical(Result):
 class Certificate(Result):
     """`checks`: part, name, value, bound, verdict, reason, detail of each."""
 
-    def __init__(self, model: Model, data: dict[str, Any]) -> None:
+    def __init__(self, model: Any, data: dict[str, Any]) -> None:
         super().__init__(model, data)
         self.checks: list[dict[str, Any]] = data["checks"]
 
@@ -349,7 +346,7 @@ class Sweep(Result):
 
     columns = ("c0", "c0_error", "c2", "c2_error", "amplitude", "mean_flow", "second_harmonic")
 
-    def __init__(self, model: Model, axes: list[tuple[str, list[float]]], data: list[dict[str, Any]]) -> None:
+    def __init__(self, model: Any, axes: list[tuple[str, list[float]]], data: list[dict[str, Any]]) -> None:
         super().__init__(model, data)
         self.axes = {name: np.array(values) for name, values in axes}
         shape = tuple(len(values) for _, values in axes)
@@ -414,7 +411,7 @@ class Sweep(Result):
 class Pattern(Result):
     """Fields over the plane. `x`, `y`; `linear[field]`, `nonlinear[field]`: `[y][x]`; `base[field]`: `[y]`."""
 
-    def __init__(self, model: Model, data: dict[str, Any]) -> None:
+    def __init__(self, model: Any, data: dict[str, Any]) -> None:
         super().__init__(model, data)
         self.k: float = data["k"]
         self.amplitude: float = data["amplitude"]
