@@ -106,13 +106,18 @@ impl PointReport {
             slopes.push((name, slope));
         }
         let (c0, c2) = ((point.c0, error.c0), (point.c2, error.c2));
-        let (equation, small_divisors) = longer(setup, base, point, &error, order)?;
+        let (equation, mut small_divisors) = longer(setup, base, point, &error, order)?;
+        // A resonance of the pair says nothing against the coefficients of the single wave.
+        let waves = waves(setup, base, point).unwrap_or_else(|error| {
+            small_divisors.push(format!("left and right waves: {error}"));
+            None
+        });
         let mut closures = point.problem.borders.iter();
         Ok(PointReport {
             envelope: Envelope::of(point.problem, &point.pair)?,
             conserved_mean: closures
                 .any(|b| matches!(b.kind, ClosureKind::Conserved | ClosureKind::Claimed)),
-            waves: waves(setup, base, point)?,
+            waves,
             equation,
             small_divisors,
             model: structure.name.clone(),
