@@ -65,7 +65,7 @@ impl PointState {
         PointState { layout, values }
     }
 
-    /// Fills in the fields in closed form: the outputs of [`KernelId::Closed`].
+    /// Fills in the fields in closed form: the outputs of [`crate::KernelId::Closed`].
     pub fn set_closed(&mut self, closed: &[f64]) {
         let first = self.layout.base(0, 0);
         self.values[first..].copy_from_slice(closed);
