@@ -1,10 +1,12 @@
 //! Derivatives of fields, the operators that make them, elementary functions, the ends of an interval.
 
-/// A derivative of a field: ∂x^x |∂x|^absx ∂y^y ∂t^t of field number `field`.
+use crate::ids::FieldId;
+
+/// ∂x^x |∂x|^absx ∂y^y ∂t^t of a field; in L†, of the adjoint field that a balance has.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-pub struct Jet {
-    /// The field (in L†: the balance) that is derived.
-    pub field: u8,
+pub struct Jet<V = FieldId> {
+    /// What is derived.
+    pub of: V,
     /// Powers of ∂t.
     pub t: u8,
     /// Powers of ∂x.
@@ -15,11 +17,11 @@ pub struct Jet {
     pub y: u8,
 }
 
-impl Jet {
+impl<V> Jet<V> {
     /// The field itself.
-    pub fn value(field: usize) -> Self {
+    pub const fn value(of: V) -> Self {
         Jet {
-            field: field as u8,
+            of,
             t: 0,
             x: 0,
             absx: 0,
@@ -28,7 +30,7 @@ impl Jet {
     }
 
     /// Whether a y-dependent base state has this jet (no x or t in it).
-    pub fn is_base(self) -> bool {
+    pub fn is_base(&self) -> bool {
         self.t == 0 && self.x == 0 && self.absx == 0
     }
 
@@ -41,6 +43,21 @@ impl Jet {
             ..self
         };
         (jet, pairs % 2 == 1)
+    }
+
+    /// The jet without its x-derivatives: what modes of every wavenumber share.
+    pub fn profile(self) -> Self {
+        Jet {
+            x: 0,
+            absx: 0,
+            ..self
+        }
+    }
+
+    /// The same derivative of something else.
+    pub fn about<W>(self, of: W) -> Jet<W> {
+        let Jet { t, x, absx, y, .. } = self;
+        Jet { of, t, x, absx, y }
     }
 
     /// The jet with one more derivative.
@@ -57,14 +74,8 @@ impl Jet {
 }
 
 /// Shorthand for literals in emitted code.
-pub fn jet(field: u8, t: u8, x: u8, absx: u8, y: u8) -> Jet {
-    Jet {
-        field,
-        t,
-        x,
-        absx,
-        y,
-    }
+pub const fn jet<V>(of: V, t: u8, x: u8, absx: u8, y: u8) -> Jet<V> {
+    Jet { of, t, x, absx, y }
 }
 
 /// Differential operators of the spec language.

@@ -1,6 +1,7 @@
 //! Straight-line programs with common subexpressions shared, as data: what the Rust emitter prints, what the tape
 //! runs, and what the solver runs on numbers of its own, the same operations in the same order.
 
+use crate::ids::{BalanceId, Table};
 use crate::jet::Function;
 use crate::number::Number;
 use crate::structure::{KernelId, ResidualId, Structure};
@@ -59,6 +60,18 @@ pub struct Kernel {
     /// Arithmetic operations of the expressions as written, nothing shared.
     pub unshared: usize,
 }
+
+/// What a residual reads: the point state, then the jets of the full state.
+pub const RESIDUAL_INPUTS: [Array; 2] = [
+    Array {
+        name: "p",
+        real: true,
+    },
+    Array {
+        name: "x",
+        real: false,
+    },
+];
 
 impl Kernel {
     /// Arithmetic operations after sharing.
@@ -157,7 +170,7 @@ pub struct ModelKernels {
     /// The real kernels.
     pub kernels: Vec<(KernelId, Kernel)>,
     /// `forms[d − 2][row]`
-    pub forms: Vec<Vec<Option<Kernel>>>,
+    pub forms: Vec<Table<BalanceId, Option<Kernel>>>,
     /// The unexpanded residuals.
     pub residuals: Vec<(ResidualId, Kernel)>,
 }

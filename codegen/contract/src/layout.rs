@@ -1,5 +1,6 @@
 //! The outputs of kernels, one after another: the generator writes and the solver reads through this file alone.
 
+use crate::ids::{BalanceId, BaseRowId, Id, Table};
 use crate::jet::{End, Jet};
 use crate::structure::{
     AdjointConditionInfo, AmplitudeInfo, BaseJet, BaseRowInfo, CaseInfo, ClosureInfo,
@@ -54,13 +55,17 @@ pub fn write_linearised<T>(rows: Vec<Linearised<T>>) -> Vec<T> {
 }
 
 /// One row of the base problem: [`KernelId::Base`].
-pub fn read_base_row(rows: &[BaseRowInfo], index: usize, out: &[f64]) -> Linearised<f64> {
+pub fn read_base_row(
+    rows: &Table<BaseRowId, BaseRowInfo>,
+    row: BaseRowId,
+    out: &[f64],
+) -> Linearised<f64> {
     let mut reader = Reader { rest: out };
-    let before = rows[..index].iter();
+    let before = rows.iter().take(row.index());
     before.for_each(|row| {
         reader.linearised(&row.jets);
     });
-    reader.linearised(&rows[index].jets)
+    reader.linearised(&rows[row].jets)
 }
 
 /// The conditions of the base state at one end: [`KernelId::BaseConditions`].
@@ -135,7 +140,7 @@ pub fn read_conditions<'a>(
 pub fn read_adjoint_conditions<'a>(
     conditions: &'a [AdjointConditionInfo],
     out: [&'a [f64]; 2],
-) -> impl Iterator<Item = (End, Vec<(Jet, f64)>)> {
+) -> impl Iterator<Item = (End, Vec<(Jet<BalanceId>, f64)>)> {
     let mut readers = out.map(|rest| Reader { rest });
     conditions.iter().map(move |condition| {
         let count = condition.jets.len();
@@ -256,10 +261,10 @@ pub fn read_output(outputs: &[OutputInfo], index: usize, out: &[f64]) -> OutputT
 }
 
 /// The terms of an operator with their coefficients: [`KernelId::Linear`], [`KernelId::Adjoint`].
-pub fn read_terms<'a>(
-    terms: &'a [TermInfo],
+pub fn read_terms<'a, Row, Column>(
+    terms: &'a [TermInfo<Row, Column>],
     out: &'a [f64],
-) -> impl Iterator<Item = (&'a TermInfo, f64)> {
+) -> impl Iterator<Item = (&'a TermInfo<Row, Column>, f64)> {
     terms.iter().zip(out.iter().copied())
 }
 
@@ -307,19 +312,27 @@ pub fn output_length(structure: &Structure, kernel: KernelId) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ids::FieldId;
 
     /// What is written is what is read.
     #[test]
     fn written_and_read() {
-        let jet = |field, order| BaseJet { field, order };
+        let jet = |field, order| BaseJet {
+            field: FieldId(field),
+            order,
+        };
         let rows = [vec![jet(0, 0), jet(1, 2)], vec![], vec![jet(1, 0)]];
         let value = |start: f64, count: usize| Linearised {
             value: start,
             slopes: (1..=count).map(|i| start + i as f64).collect(),
         };
         let out = write_linearised(vec![value(10.0, 2), value(20.0, 0), value(30.0, 1)]);
-        let rows = rows.map(|jets| BaseRowInfo { balance: 0, jets });
-        let read = read_base_row(&rows, 2, &out);
+        let row = |jets| BaseRowInfo {
+            balance: BalanceId(0),
+            jets,
+        };
+        let rows = rows.map(row).into_iter().collect();
+        let read = read_base_row(&rows, BaseRowId(2), &out);
         assert_eq!((read.value, read.slopes), (30.0, vec![31.0]));
 
         let integrals = [vec![jet(0, 0)], vec![jet(0, 0), jet(0, 1)]];
@@ -333,7 +346,7 @@ mod tests {
         });
         let info = AmplitudeInfo {
             weighted: Vec::new(),
-            field: Some(0),
+            field: Some(FieldId(0)),
             description: String::new(),
         };
         assert!(matches!(

@@ -5,6 +5,7 @@
 
 #![warn(missing_docs)]
 
+mod ids;
 mod jet;
 mod kernel;
 pub mod layout;
@@ -16,8 +17,13 @@ mod state;
 mod structure;
 mod tape;
 
+pub use ids::{
+    BalanceId, BaseRowId, CaseId, FieldId, Id, LawId, ParameterId, SolvedId, Table,
+};
 pub use jet::{End, Function, Jet, Operator, jet};
-pub use kernel::{Array, Kernel, ModelKernels, Operation, Register, apply, choose};
+pub use kernel::{
+    Array, Kernel, ModelKernels, Operation, RESIDUAL_INPUTS, Register, apply, choose,
+};
 pub use layout::{Linearised, Measure, output_length};
 pub use model::{Model, evaluate};
 pub use nearest::nearest;

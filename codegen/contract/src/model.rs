@@ -3,6 +3,7 @@
 //! Generated code and a model run from its tape implement the same object-safe trait; nothing below
 //! this module knows where the kernels come from, or which model they belong to.
 
+use crate::ids::BalanceId;
 use crate::kernel::Kernel;
 use crate::layout::output_length;
 use crate::number::C64;
@@ -26,7 +27,7 @@ pub trait Model: Send + Sync {
 
     /// N_degree of one balance as a symmetric multilinear form: `c` are the outputs of
     /// [`KernelId::Nonlinear`], `x` one slice of [`Structure::form_jets`] an argument.
-    fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64;
+    fn form(&self, degree: usize, row: BalanceId, c: &[f64], x: &[&[C64]]) -> C64;
 
     /// The unexpanded residual M ∂t X − R (not divided), or left − right of the conditions, as a program for
     /// numbers of any kind: its inputs are the point state and the jets of [`Structure::residual_jets`], its outputs

@@ -1,5 +1,7 @@
 //! The point state that kernels read: where what stands in it.
 
+use crate::ids::{FieldId, Id, ParameterId, Table};
+
 /// Positions in the point state
 /// `[y, k, parameters…, base field 0 and its y-derivatives to base_order, base field 1, …]`.
 #[derive(Clone, Copy, Debug)]
@@ -36,13 +38,13 @@ impl StateLayout {
     }
 
     /// Of a parameter.
-    pub fn parameter(&self, index: usize) -> usize {
-        2 + index
+    pub fn parameter(&self, parameter: ParameterId) -> usize {
+        2 + parameter.index()
     }
 
     /// Of ∂y^order of a base field.
-    pub fn base(&self, field: usize, order: usize) -> usize {
-        2 + self.parameters + field * (self.base_order + 1) + order
+    pub fn base(&self, field: FieldId, order: usize) -> usize {
+        2 + self.parameters + field.index() * (self.base_order + 1) + order
     }
 }
 
@@ -55,24 +57,24 @@ pub struct PointState {
 
 impl PointState {
     /// At a place, for a wavenumber, with parameters; the base fields are zero.
-    pub fn new(layout: StateLayout, y: f64, k: f64, parameters: &[f64]) -> Self {
+    pub fn new(layout: StateLayout, y: f64, k: f64, parameters: &Table<ParameterId, f64>) -> Self {
         let mut values = vec![0.0; layout.length()];
         values[layout.coordinate()] = y;
         values[layout.wavenumber()] = k;
-        for (index, value) in parameters.iter().enumerate() {
-            values[layout.parameter(index)] = *value;
+        for (parameter, value) in parameters.pairs() {
+            values[layout.parameter(parameter)] = *value;
         }
         PointState { layout, values }
     }
 
     /// Fills in the fields in closed form: the outputs of [`crate::KernelId::Closed`].
     pub fn set_closed(&mut self, closed: &[f64]) {
-        let first = self.layout.base(0, 0);
+        let first = self.layout.base(FieldId(0), 0);
         self.values[first..].copy_from_slice(closed);
     }
 
     /// Sets ∂y^order of a base field.
-    pub fn set_base(&mut self, field: usize, order: usize, value: f64) {
+    pub fn set_base(&mut self, field: FieldId, order: usize, value: f64) {
         let position = self.layout.base(field, order);
         self.values[position] = value;
     }
@@ -90,14 +92,14 @@ impl PointState {
 
 #[cfg(test)]
 mod tests {
-    use super::StateLayout;
+    use super::{FieldId, ParameterId, StateLayout};
 
     #[test]
     fn the_state_holds_every_element_once() {
         let layout = StateLayout::new(3, 2, 2);
         let mut positions = vec![layout.coordinate(), layout.wavenumber()];
-        positions.extend((0..3).map(|i| layout.parameter(i)));
-        positions.extend((0..2).flat_map(|f| (0..=2).map(move |o| layout.base(f, o))));
+        positions.extend((0..3).map(|i| layout.parameter(ParameterId(i))));
+        positions.extend((0..2).flat_map(|f| (0..=2).map(move |o| layout.base(FieldId(f), o))));
         assert_eq!(positions, (0..layout.length()).collect::<Vec<_>>());
     }
 }

@@ -3,6 +3,7 @@
 //! The same types serve the emitted code (where they are written out as literals) and a model that
 //! runs from its tape.
 
+use crate::ids::{BalanceId, BaseRowId, CaseId, FieldId, Id, ParameterId, SolvedId, Table};
 use crate::jet::{End, Jet};
 use crate::state::StateLayout;
 
@@ -20,37 +21,37 @@ pub struct Structure {
     /// The cross-stream coordinate, if there is one.
     pub coordinate: Option<String>,
     /// Profiles first, then unknown numbers.
-    pub fields: Vec<FieldInfo>,
+    pub fields: Table<FieldId, FieldInfo>,
     /// In the order of their declaration.
-    pub parameters: Vec<ParameterInfo>,
+    pub parameters: Table<ParameterId, ParameterInfo>,
     /// Names of the balances, in the order of their declaration.
-    pub balances: Vec<String>,
+    pub balances: Table<BalanceId, String>,
     /// Highest y-derivative of base fields that kernels ask for.
     pub base_order: usize,
     /// What is needed to solve for the base state.
     pub base: BaseInfo,
     /// Points of the balances and values of the profiles in L.
-    pub offsets: OffsetsInfo,
-    /// The same for L†: rows are fields, columns balances.
-    pub adjoint_offsets: OffsetsInfo,
+    pub offsets: OffsetsInfo<BalanceId, FieldId>,
+    /// The same for L†, from balances to fields.
+    pub adjoint_offsets: OffsetsInfo<FieldId, BalanceId>,
     /// Which fields and balances are odd in the mirror x → −x, where the model has that symmetry.
     pub parity: Option<ParityInfo>,
     /// L (no ∂t) and M0 (one ∂t); coefficients from [`KernelId::Linear`] in this order.
-    pub linear: Vec<TermInfo>,
-    /// L† and M0†; rows are fields, `jet.field` is a balance.
-    pub adjoint: Vec<TermInfo>,
+    pub linear: Vec<TermInfo<BalanceId, FieldId>>,
+    /// L† and M0†; coefficients from [`KernelId::Adjoint`] in this order.
+    pub adjoint: Vec<TermInfo<FieldId, BalanceId>>,
     /// The jets that the nonlinear forms read, in the order of their arguments.
     pub form_jets: Vec<Jet>,
     /// Number of outputs of [`KernelId::Nonlinear`].
     pub form_coefficients: usize,
     /// `forms[d − 2][row]`: whether N_d has terms in that row.
-    pub forms: Vec<Vec<bool>>,
+    pub forms: Vec<Table<BalanceId, bool>>,
     /// The jets that the unexpanded residual reads.
     pub residual_jets: Vec<Jet>,
     /// Parameters (switches) that select the case.
-    pub switches: Vec<usize>,
+    pub switches: Vec<ParameterId>,
     /// One for each combination of the structural switches.
-    pub cases: Vec<CaseInfo>,
+    pub cases: Table<CaseId, CaseInfo>,
     /// What the amplitude measures.
     pub amplitude: AmplitudeInfo,
     /// Output functionals.
@@ -108,13 +109,13 @@ pub struct ParameterInfo {
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseInfo {
     /// Fields that are solved for; profiles first.
-    pub solved: Vec<usize>,
+    pub solved: Table<SolvedId, FieldId>,
     /// Whether each field has a closed form.
-    pub closed: Vec<bool>,
+    pub closed: Table<FieldId, bool>,
     /// Balances that it has to satisfy.
-    pub rows: Vec<BaseRowInfo>,
+    pub rows: Table<BaseRowId, BaseRowInfo>,
     /// Points of `rows` and values of the profiles among `solved`.
-    pub offsets: OffsetsInfo,
+    pub offsets: OffsetsInfo<BaseRowId, SolvedId>,
     /// Base jets that each integrand depends on.
     pub integrals: Vec<Vec<BaseJet>>,
     /// Parameter and end of each automatic condition.
@@ -124,18 +125,18 @@ pub struct BaseInfo {
 /// Row i is collocated at N + `rows[i]` points, column j has N + `columns[j]` values; as many
 /// conditions as the values are more than the points.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OffsetsInfo {
-    /// By balance.
-    pub rows: Vec<usize>,
-    /// By field.
-    pub columns: Vec<usize>,
+pub struct OffsetsInfo<Row, Column> {
+    /// By row.
+    pub rows: Table<Row, usize>,
+    /// By column.
+    pub columns: Table<Column, usize>,
 }
 
 /// ∂y^order of a base field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseJet {
     /// Its field.
-    pub field: usize,
+    pub field: FieldId,
     /// Powers of ∂y.
     pub order: usize,
 }
@@ -145,7 +146,7 @@ pub struct BaseJet {
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseRowInfo {
     /// Which balance it is.
-    pub balance: usize,
+    pub balance: BalanceId,
     /// The base jets that it depends on.
     pub jets: Vec<BaseJet>,
 }
@@ -154,7 +155,7 @@ pub struct BaseRowInfo {
 #[derive(Clone, Debug, PartialEq)]
 pub struct AutomaticInfo {
     /// Which parameter.
-    pub parameter: usize,
+    pub parameter: ParameterId,
     /// Where the condition holds.
     pub end: End,
 }
@@ -163,18 +164,18 @@ pub struct AutomaticInfo {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParityInfo {
     /// By field.
-    pub fields: Vec<bool>,
+    pub fields: Table<FieldId, bool>,
     /// By balance.
-    pub rows: Vec<bool>,
+    pub rows: Table<BalanceId, bool>,
 }
 
-/// A term of an operator.
+/// A term of an operator from columns to rows: L takes fields to balances, L† balances to fields.
 #[derive(Clone, Debug, PartialEq)]
-pub struct TermInfo {
-    /// Of L the balance, of L† the field that it stands in.
-    pub row: usize,
-    /// Of L a jet of a field, of L† of a balance.
-    pub jet: Jet,
+pub struct TermInfo<Row, Column> {
+    /// Where it stands.
+    pub row: Row,
+    /// What it is applied to.
+    pub jet: Jet<Column>,
 }
 
 /// One combination of the structural switches: its conditions and closures.
@@ -217,8 +218,8 @@ pub struct ConditionInfo {
 pub struct AdjointConditionInfo {
     /// Where it holds.
     pub end: End,
-    /// Its jets: the `field` of each is a balance.
-    pub jets: Vec<Jet>,
+    /// Jets of the adjoint fields of balances.
+    pub jets: Vec<Jet<BalanceId>>,
 }
 
 /// What makes the problem at k = 0 solvable.
@@ -227,20 +228,20 @@ pub struct ClosureInfo {
     /// Which kind.
     pub kind: ClosureKind,
     /// The gauge or the unknown.
-    pub field: Option<usize>,
+    pub field: Option<FieldId>,
     /// The jets whose integral is closed.
     pub density: Vec<Jet>,
     /// Balances that the multiplier enters.
-    pub column: Vec<usize>,
+    pub column: Vec<BalanceId>,
 }
 
 /// What the amplitude measures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmplitudeInfo {
     /// Fields with a weight in ∫ Σ w|q|² dy; empty for a point value.
-    pub weighted: Vec<usize>,
+    pub weighted: Vec<FieldId>,
     /// The field of a point value.
-    pub field: Option<usize>,
+    pub field: Option<FieldId>,
     /// What is printed beside every coefficient.
     pub description: String,
 }
@@ -290,7 +291,7 @@ pub enum KernelId {
     /// Conditions that determine automatic parameters.
     Automatic,
     /// Conditions of the base in one case, with their Jacobian.
-    BaseConditions(usize),
+    BaseConditions(CaseId),
     /// What each balance is divided by.
     Divisors,
     /// Coefficients of L and M0.
@@ -300,11 +301,11 @@ pub enum KernelId {
     /// Coefficients of N2 and N3.
     Nonlinear,
     /// Coefficients of the boundary conditions of one case.
-    Conditions(usize),
+    Conditions(CaseId),
     /// The same of the adjoint problem.
-    AdjointConditions(usize),
+    AdjointConditions(CaseId),
     /// Densities and columns of what closes k = 0, in one case.
-    Closures(usize),
+    Closures(CaseId),
     /// Weights, then the prescribed value, then the place.
     Amplitude,
     /// For each output its place, then its coefficients.
@@ -317,9 +318,9 @@ pub enum ResidualId {
     /// One value a balance, not divided.
     Balances,
     /// One value a boundary condition of a case, in the order of its conditions.
-    Conditions(usize),
+    Conditions(CaseId),
     /// One value a condition that the base state of a case, being in closed form, has to meet.
-    BaseChecks(usize),
+    BaseChecks(CaseId),
 }
 
 impl Structure {
@@ -328,23 +329,29 @@ impl Structure {
         StateLayout::new(self.parameters.len(), self.fields.len(), self.base_order)
     }
 
-    /// Position of a base jet in the point state.
-    pub fn base_position(&self, field: usize, order: usize) -> usize {
-        self.state().base(field, order)
+    /// ∂y^order of a base field at a point.
+    pub fn base_value(&self, point: &[f64], field: FieldId, order: usize) -> f64 {
+        point[self.state().base(field, order)]
     }
 
     /// The value of a jet in the base state at a point: zero for one with ∂x or ∂t in it.
     pub fn base_jet(&self, jet: Jet, point: &[f64]) -> f64 {
         let order = usize::from(jet.y);
         if jet.is_base() && order <= self.base_order {
-            point[self.base_position(usize::from(jet.field), order)]
+            self.base_value(point, jet.of, order)
         } else {
             0.0
         }
     }
 
-    /// Number of profiles among the fields.
-    pub fn profiles(&self) -> usize {
-        self.fields.iter().filter(|f| !f.uniform).count()
+    /// The fields that are profiles; they come first.
+    pub fn profiles(&self) -> impl ExactSizeIterator<Item = FieldId> + use<> {
+        let count = self.fields.iter().filter(|f| !f.uniform).count();
+        (0..count).map(FieldId::at)
+    }
+
+    /// A field by name.
+    pub fn field(&self, name: &str) -> Option<FieldId> {
+        self.fields.position(|f| f.name == name)
     }
 }

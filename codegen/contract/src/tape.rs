@@ -1,5 +1,6 @@
 //! A model run from its spec without a build: the kernels' operations, interpreted.
 
+use crate::ids::{BalanceId, Table};
 use crate::kernel::{Kernel, ModelKernels};
 use crate::model::Model;
 use crate::number::C64;
@@ -13,7 +14,7 @@ pub struct TapeModel {
     sources: Vec<(String, String)>,
     laws: Vec<(String, String)>,
     kernels: HashMap<KernelId, Kernel>,
-    forms: Vec<Vec<Option<Kernel>>>,
+    forms: Vec<Table<BalanceId, Option<Kernel>>>,
     residuals: HashMap<ResidualId, Kernel>,
 }
 
@@ -64,7 +65,7 @@ impl Model for TapeModel {
         REGISTERS.with_borrow(|registers| copy_outputs(kernel, registers, out));
     }
 
-    fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64 {
+    fn form(&self, degree: usize, row: BalanceId, c: &[f64], x: &[&[C64]]) -> C64 {
         thread_local!(static REGISTERS: RefCell<Vec<C64>> = const { RefCell::new(Vec::new()) });
         let Some(kernel) = &self.forms[degree - 2][row] else {
             return C64::new(0.0, 0.0);

@@ -1,27 +1,28 @@
 //! The base state as a problem of its own: its balances, what they are solved for, its integrals.
 
 use super::form::Form;
-use super::offsets::{Offsets, offsets};
+use super::offsets::{Offsets, Orders, offsets};
 use super::{Deriver, Opener};
 use crate::diagnostic::Diagnostic;
-use crate::graph::{Id, Node};
+use crate::graph::{BalanceId, FieldId, Id, Node, Table};
+use landau_contract::{BaseRowId, SolvedId};
 
 /// A balance restricted to the base state.
 #[derive(Clone, Debug)]
 pub struct BaseRow {
-    /// Which balance, by position.
-    pub balance: usize,
+    /// Which balance.
+    pub balance: BalanceId,
     /// With laws opaque.
     pub residual: Id,
 }
 
 /// What the base state has to obey.
 pub(super) struct BaseProblem {
-    pub rows: Vec<BaseRow>,
-    pub solved: Vec<usize>,
+    pub rows: Table<BaseRowId, BaseRow>,
+    pub solved: Table<SolvedId, FieldId>,
     /// Points of the rows and values of the solved profiles; none of either where the base is in closed form
     /// and the rows are there to be checked.
-    pub offsets: Offsets,
+    pub offsets: Offsets<BaseRowId, SolvedId>,
     /// Integrands and values.
     pub integrals: Vec<(Id, Id)>,
     /// How many conditions (at walls and integrals) determine the base state.
@@ -32,22 +33,23 @@ impl Deriver<'_> {
     /// Which balances, conditions and integrals the base state has to obey.
     pub(super) fn base_problem(
         &mut self,
-        balances: &[Form],
+        balances: &Table<BalanceId, Form>,
         mistakes: &mut Vec<Diagnostic>,
     ) -> Option<BaseProblem> {
         let model = self.model;
         let closed = &model.base.closed;
         let mut opener = Opener::new(&model.laws, closed, &self.uniform);
-        let mut solved: Vec<usize> = (0..closed.len()).filter(|&f| closed[f].is_none()).collect();
+        let mut solved: Table<SolvedId, FieldId> =
+            closed.ids().filter(|&f| closed[f].is_none()).collect();
         solved.sort_by_key(|&f| self.uniform[f]);
-        let profiles: Vec<usize> = solved
+        let profiles: Table<SolvedId, FieldId> = solved
             .iter()
             .copied()
             .filter(|&f| !self.uniform[f])
             .collect();
-        let mut rows = Vec::new();
-        let mut orders = Vec::new();
-        for (balance, form) in balances.iter().enumerate() {
+        let mut rows = Table::default();
+        let mut orders: Orders<BaseRowId, SolvedId> = Table::default();
+        for (balance, form) in balances.pairs() {
             let residual = form.base(self.graph);
             if self.graph.vanishes(residual) {
                 continue;
@@ -56,10 +58,10 @@ impl Deriver<'_> {
             if self.graph.vanishes(opened) {
                 continue;
             }
-            let mut line = vec![None; profiles.len()];
+            let mut line = profiles.map(|_| None);
             for node in self.graph.topological(&[opened]) {
                 if let Node::Base(field, order) = self.graph.node(node)
-                    && let Some(column) = profiles.iter().position(|f| f == field)
+                    && let Some(column) = profiles.position(|f| f == field)
                 {
                     let entry: &mut Option<u8> = &mut line[column];
                     *entry = Some(entry.unwrap_or(0).max(*order));
@@ -73,8 +75,8 @@ impl Deriver<'_> {
             // symbolic test could not see through a root.
             let integrals = self.base_integrals(&mut Vec::new());
             let offsets = Offsets {
-                rows: vec![0; rows.len()],
-                columns: Vec::new(),
+                rows: rows.map(|_| 0),
+                columns: Table::default(),
                 conditions: 0,
             };
             return Some(BaseProblem {

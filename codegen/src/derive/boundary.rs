@@ -5,8 +5,8 @@
 //! by the others; whatever then multiplies one that is left free must vanish: these are the adjoint
 //! conditions. The base state enters only through its own boundary conditions.
 
-use super::linear::Term;
-use crate::graph::{Graph, Id, Jet, Rational, Variable};
+use super::linear::DirectTerm;
+use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Rational, Variable};
 use num_traits::One;
 use std::collections::BTreeMap;
 
@@ -14,7 +14,10 @@ use std::collections::BTreeMap;
 pub type Symbol = BTreeMap<(u8, u8), Id>;
 
 /// A linear combination of jets at one end; jets carry no x-derivatives, the symbols do.
-pub type Combination = BTreeMap<Jet, Symbol>;
+pub type Combination<V> = BTreeMap<Jet<V>, Symbol>;
+
+/// X-jet → combination of Y-jets.
+pub type BoundaryForm = BTreeMap<Jet<FieldId>, Combination<BalanceId>>;
 
 /// into += other · factor
 fn symbol_add(graph: &mut Graph, into: &mut Symbol, other: &Symbol, factor: &Symbol) {
@@ -55,7 +58,11 @@ impl Simplifier<'_> {
         simplified
     }
 
-    pub fn combination(&mut self, graph: &mut Graph, combination: Combination) -> Combination {
+    pub fn combination<V: Ord>(
+        &mut self,
+        graph: &mut Graph,
+        combination: Combination<V>,
+    ) -> Combination<V> {
         let mut simplified = Combination::new();
         for (jet, symbol) in combination {
             let symbol = self.symbol(graph, symbol);
@@ -68,43 +75,37 @@ impl Simplifier<'_> {
 }
 
 /// A jet without its x-derivatives, and these as a symbol with the coefficient.
-pub fn split(jet: Jet, coefficient: Id) -> (Jet, Symbol) {
-    (
-        Jet {
-            x: 0,
-            absx: 0,
-            ..jet
-        },
-        Symbol::from([((jet.x, jet.absx), coefficient)]),
-    )
+pub fn split<V: Copy>(jet: Jet<V>, coefficient: Id) -> (Jet<V>, Symbol) {
+    let symbol = Symbol::from([((jet.x, jet.absx), coefficient)]);
+    (jet.profile(), symbol)
 }
 
 /// The entry to eliminate by: no x-derivative in it; the highest y-derivative for choice.
-fn pivot(combination: &Combination) -> Option<(Jet, Id)> {
+fn pivot<V: Copy + Ord>(combination: &Combination<V>) -> Option<(Jet<V>, Id)> {
     combination
         .iter()
         .filter(|(_, symbol)| symbol.len() == 1 && symbol.contains_key(&(0, 0)))
-        .max_by_key(|(jet, _)| (jet.y, std::cmp::Reverse(jet.field)))
+        .max_by_key(|(jet, _)| (jet.y, std::cmp::Reverse(jet.of)))
         .map(|(jet, symbol)| (*jet, symbol[&(0, 0)]))
 }
 
 /// Reduced conditions: each says `jet = −Σ symbol · other jets`.
-#[derive(Clone, Default)]
-pub struct Reduced {
-    pub rules: Vec<(Jet, Combination)>,
+#[derive(Clone)]
+pub struct Reduced<V> {
+    pub rules: Vec<(Jet<V>, Combination<V>)>,
 }
 
 /// Gaussian elimination. Rows without an admissible pivot come back in `Err`.
-pub fn reduce(
+pub fn reduce<V: Copy + Ord>(
     graph: &mut Graph,
-    conditions: Vec<Combination>,
+    conditions: Vec<Combination<V>>,
     simplifier: &mut Simplifier,
-) -> Result<Reduced, Combination> {
-    let mut open: Vec<Combination> = conditions
+) -> Result<Reduced<V>, Combination<V>> {
+    let mut open: Vec<Combination<V>> = conditions
         .into_iter()
         .map(|c| simplifier.combination(graph, c))
         .collect();
-    let mut reduced = Reduced::default();
+    let mut reduced = Reduced { rules: Vec::new() };
     loop {
         open.retain(|c| !c.is_empty());
         // The shortest condition first: it makes the others shorter.
@@ -143,12 +144,12 @@ pub fn reduce(
 }
 
 /// `combination` with `jet` replaced by −`row`.
-fn substitute(
+fn substitute<V: Copy + Ord>(
     graph: &mut Graph,
-    combination: &Combination,
-    jet: Jet,
-    row: &Combination,
-) -> Combination {
+    combination: &Combination<V>,
+    jet: Jet<V>,
+    row: &Combination<V>,
+) -> Combination<V> {
     let mut result = combination.clone();
     let Some(factor) = result.remove(&jet) else {
         return result;
@@ -167,11 +168,8 @@ fn substitute(
 ///
 /// Terms with ∂t and a y-derivative have no place here (the conditions would depend on the
 /// eigenvalue); `Err` names the first.
-pub fn boundary_form(
-    graph: &mut Graph,
-    terms: &[Term],
-) -> Result<BTreeMap<Jet, Combination>, Term> {
-    let mut form: BTreeMap<Jet, Combination> = BTreeMap::new();
+pub fn boundary_form(graph: &mut Graph, terms: &[DirectTerm]) -> Result<BoundaryForm, DirectTerm> {
+    let mut form = BoundaryForm::new();
     for term in terms.iter().filter(|t| t.jet.y > 0) {
         if term.jet.t > 0 {
             return Err(*term);
@@ -179,9 +177,7 @@ pub fn boundary_form(
         for l in 0..term.jet.y {
             let x_jet = Jet {
                 y: term.jet.y - 1 - l,
-                x: 0,
-                absx: 0,
-                ..term.jet
+                ..term.jet.profile()
             };
             let mut derivative = term.coefficient;
             let mut binomial = Rational::one();
@@ -193,11 +189,8 @@ pub fn boundary_form(
                     binomial.clone()
                 };
                 let y_jet = Jet {
-                    field: term.row as u8,
-                    t: 0,
-                    x: 0,
-                    absx: 0,
                     y: l - r,
+                    ..Jet::value(term.row)
                 };
                 let coefficient = graph.scale(derivative, sign);
                 let unit = Symbol::from([((term.jet.x, term.jet.absx), graph.one())]);
@@ -217,10 +210,10 @@ pub fn boundary_form(
 /// X-jet that the direct conditions leave free.
 pub fn demands(
     graph: &mut Graph,
-    form: &BTreeMap<Jet, Combination>,
-    direct: &Reduced,
+    form: &BoundaryForm,
+    direct: &Reduced<FieldId>,
     simplifier: &mut Simplifier,
-) -> BTreeMap<Jet, Combination> {
+) -> BoundaryForm {
     let mut demands = form.clone();
     for (jet, rule) in &direct.rules {
         let Some(factor) = demands.remove(jet) else {
@@ -248,7 +241,10 @@ pub fn demands(
 }
 
 /// A demand on conj(Y) read as a condition on Y: ∂x changes sign under conjugation.
-pub fn conjugate(graph: &mut Graph, combination: &Combination) -> Combination {
+pub fn conjugate<V: Copy + Ord>(
+    graph: &mut Graph,
+    combination: &Combination<V>,
+) -> Combination<V> {
     let mut result = Combination::new();
     for (jet, symbol) in combination {
         let mirrored = symbol.iter().map(|(&(x, absx), &id)| {
@@ -261,7 +257,11 @@ pub fn conjugate(graph: &mut Graph, combination: &Combination) -> Combination {
 }
 
 /// A reduced rule written out as condition: jet + Σ symbol · others = 0.
-pub fn as_condition(graph: &mut Graph, jet: Jet, rule: &Combination) -> Combination {
+pub fn as_condition<V: Copy + Ord>(
+    graph: &mut Graph,
+    jet: Jet<V>,
+    rule: &Combination<V>,
+) -> Combination<V> {
     let mut condition = rule.clone();
     let one = graph.one();
     condition.insert(jet, Symbol::from([((0, 0), one)]));
@@ -269,7 +269,7 @@ pub fn as_condition(graph: &mut Graph, jet: Jet, rule: &Combination) -> Combinat
 }
 
 /// The part of a combination at k = 0.
-pub fn at_zero_wavenumber(combination: &Combination) -> BTreeMap<Jet, Id> {
+pub fn at_zero_wavenumber<V: Copy + Ord>(combination: &Combination<V>) -> BTreeMap<Jet<V>, Id> {
     let mut part = BTreeMap::new();
     for (jet, symbol) in combination {
         if let Some(&id) = symbol.get(&(0, 0)) {

@@ -8,18 +8,18 @@ use super::wall::{
 };
 use super::{Deriver, regular};
 use crate::diagnostic::{Diagnostic, Location};
-use crate::graph::{Graph, Id, Jet, Node, Plain};
+use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Node, Plain};
 use crate::model::{Closure, Condition, End};
 
-/// A condition on the adjoint field: Σ symbol · jets = 0, `jet.field` being a balance.
+/// A condition on the adjoint fields: Σ symbol · jets = 0.
 #[derive(Clone, Debug)]
 pub struct AdjointCondition {
     /// Where it holds.
     pub end: End,
     /// Coefficients by jet.
-    pub combination: Combination,
+    pub combination: Combination<BalanceId>,
     /// The balance whose adjoint field it is solved for.
-    pub balance: usize,
+    pub balance: BalanceId,
 }
 
 /// One combination of the structural switches.
@@ -121,7 +121,6 @@ fn check_count(
     mistakes: &mut Vec<Diagnostic>,
 ) -> Option<()> {
     let model = deriver.model;
-    let profiles = deriver.uniform.iter().filter(|u| !**u).count();
     let place = match (written.last(), model.balances.first()) {
         (Some(condition), _) => condition.location.clone(),
         (None, Some(balance)) => balance.location.clone(),
@@ -133,7 +132,8 @@ fn check_count(
     if conditions.len() == needed {
         return Some(());
     }
-    let counts: Vec<String> = (0..profiles)
+    let counts: Vec<String> = model
+        .profiles()
         .map(|field| {
             let named = conditions.iter().filter_map(WallCondition::about);
             let count = named.filter(|f| *f == field).count();
@@ -172,7 +172,7 @@ fn base_conditions(
     written_base: &[&Condition],
     mistakes: &mut Vec<Diagnostic>,
 ) -> Option<Vec<BaseCondition>> {
-    let mut found: Vec<(BaseCondition, Vec<usize>)> = Vec::new();
+    let mut found: Vec<(BaseCondition, Vec<FieldId>)> = Vec::new();
     for (condition, own) in written_base
         .iter()
         .map(|c| (c, true))
@@ -180,7 +180,7 @@ fn base_conditions(
     {
         let residual = deriver.base_part(condition.residual)?;
         let fields = base_fields(deriver, residual);
-        let solved: Vec<usize> = fields
+        let solved: Vec<FieldId> = fields
             .into_iter()
             .filter(|f| problem.solved.contains(f))
             .collect();
@@ -243,7 +243,7 @@ fn base_conditions(
 }
 
 /// Solved fields of which the base balances hold derivatives alone, and no condition of the base anything.
-fn constants(deriver: &Deriver, problem: &CaseProblem, bound: &[usize]) -> Vec<String> {
+fn constants(deriver: &Deriver, problem: &CaseProblem, bound: &[FieldId]) -> Vec<String> {
     let solved = problem.solved.iter().filter(|&&field| {
         let valued = problem.balances.iter().any(|form| {
             let base = form.terms.get(&Vec::new());
@@ -270,11 +270,11 @@ fn base_checks(
     written: &[&Condition],
     written_base: &[&Condition],
 ) -> Vec<(End, Id)> {
-    let fields = |graph: &Graph, id: Id| -> Vec<usize> {
+    let fields = |graph: &Graph, id: Id| -> Vec<FieldId> {
         let nodes = graph.topological(&[id]).into_iter();
-        let mut fields: Vec<usize> = nodes
+        let mut fields: Vec<FieldId> = nodes
             .filter_map(|node| match graph.node(node) {
-                Node::Jet(jet) => Some(usize::from(jet.field)),
+                Node::Jet(jet) => Some(jet.of),
                 _ => None,
             })
             .collect();
@@ -304,15 +304,14 @@ fn base_checks(
 }
 
 /// Fields whose base values an expression holds (through laws too).
-fn base_fields(deriver: &Deriver, id: Id) -> Vec<usize> {
+fn base_fields(deriver: &Deriver, id: Id) -> Vec<FieldId> {
     let mut fields = Vec::new();
     for node in deriver.graph.topological(&[id]) {
         match deriver.graph.node(node) {
             Node::Base(field, _) => fields.push(*field),
             Node::BaseLaw(atom) => {
-                fields.extend(
-                    (0..deriver.uniform.len()).filter(|&f| deriver.dependence[atom.law][f]),
-                );
+                let depends = &deriver.dependence[atom.law];
+                fields.extend(depends.ids().filter(|&f| depends[f]));
             }
             _ => {}
         }
@@ -330,7 +329,7 @@ fn adjoint_conditions(
     rules: &BaseRules,
     needed: usize,
 ) -> Result<Vec<AdjointCondition>, String> {
-    let mut rows: Vec<(End, Vec<Combination>)> = Vec::new();
+    let mut rows: Vec<(End, Vec<Combination<BalanceId>>)> = Vec::new();
     let mut reasons = Vec::new();
     for (end, direct) in &walls.reduced {
         let place = deriver.place(*end);
@@ -382,7 +381,7 @@ fn adjoint_conditions(
 /// The demands of both ends solved for the highest derivatives.
 fn solved(
     deriver: &mut Deriver,
-    rows: &[(End, Vec<Combination>)],
+    rows: &[(End, Vec<Combination<BalanceId>>)],
     rules: &BaseRules,
 ) -> Result<Vec<AdjointCondition>, String> {
     let mut found = Vec::new();
@@ -398,7 +397,7 @@ fn solved(
             found.push(AdjointCondition {
                 end: *end,
                 combination: as_condition(deriver.graph, jet, &rule),
-                balance: usize::from(jet.field),
+                balance: jet.of,
             });
         }
     }
@@ -424,7 +423,7 @@ fn describe_demand(
     problem: &CaseProblem,
     end: End,
     jet: Jet,
-    combination: &Combination,
+    combination: &Combination<BalanceId>,
 ) -> String {
     let lettering = deriver.model.lettering();
     let printer = lettering.printer(deriver.graph, &Plain);
@@ -435,7 +434,7 @@ fn describe_demand(
         .map(|y| {
             format!(
                 "{}†",
-                lettering.fields[problem.pairing[usize::from(y.field)]]
+                lettering.fields[problem.pairing[y.of]]
             )
         })
         .collect();

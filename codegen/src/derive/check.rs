@@ -2,8 +2,9 @@
 
 use super::Deriver;
 use super::form::Form;
-use super::linear::Term;
+use super::linear::DirectTerm;
 use crate::diagnostic::{Diagnostic, Location};
+use crate::graph::{BalanceId, Table};
 
 impl Deriver<'_> {
     pub(super) fn check_counts(&self, profiles: usize, mistakes: &mut Vec<Diagnostic>) -> bool {
@@ -34,12 +35,12 @@ impl Deriver<'_> {
         false
     }
 
-    pub(super) fn check_orders(&self, forms: &[Form], mistakes: &mut Vec<Diagnostic>) {
+    pub(super) fn check_orders(&self, forms: &Table<BalanceId, Form>, mistakes: &mut Vec<Diagnostic>) {
         for (form, balance) in forms.iter().zip(&self.model.balances) {
             let jets = || form.terms.keys().flatten();
             let place = balance.location.clone();
             if let Some(jet) = jets().find(|j| j.t > 1) {
-                let name = &self.model.fields[usize::from(jet.field)].name;
+                let name = &self.model.fields[jet.of].name;
                 let message = format!(
                     "`{}` holds a second time derivative of `{name}`",
                     balance.name
@@ -49,7 +50,7 @@ impl Deriver<'_> {
                         .hint("introduce a field for the first time derivative"),
                 );
             } else if let Some(jet) = jets().find(|j| j.y > 2) {
-                let name = &self.model.fields[usize::from(jet.field)].name;
+                let name = &self.model.fields[jet.of].name;
                 let message = format!(
                     "`{}` holds a {}-fold y-derivative of `{name}`",
                     balance.name, jet.y
@@ -72,19 +73,18 @@ impl Deriver<'_> {
     /// Every field must occur linearly in some balance.
     pub(super) fn check_determined(
         &self,
-        linear: &[Term],
-        profiles: usize,
+        linear: &[DirectTerm],
         mistakes: &mut Vec<Diagnostic>,
     ) {
-        for field in 0..profiles {
-            if !linear.iter().any(|t| usize::from(t.jet.field) == field) {
+        for field in self.model.profiles() {
+            if !linear.iter().any(|t| t.jet.of == field) {
                 let info = &self.model.fields[field];
                 let message = format!("no balance determines the field `{}`", info.name);
                 let expected = "a field that occurs linearly in some balance";
                 mistakes.push(Diagnostic::new(info.location.clone(), message, expected));
             }
         }
-        for (row, balance) in self.model.balances.iter().enumerate() {
+        for (row, balance) in self.model.balances.pairs() {
             if !linear.iter().any(|t| t.row == row) {
                 let message = format!("the balance `{}` has no linear part", balance.name);
                 let expected = "a balance that is linear in some field to lowest order";

@@ -7,12 +7,15 @@
 
 use super::boundary::{Simplifier, at_zero_wavenumber, demands};
 use super::form::Form;
-use super::linear::Term;
+use super::linear::DirectTerm;
 use super::wall::{BaseRules, CaseProblem, Walls, at_end};
 use super::{Case, Deriver};
 use crate::diagnostic::Diagnostic;
-use crate::graph::{Graph, Id, Jet, Node, Rational, Variable};
-use crate::model::Closure;
+use crate::graph::{
+    BalanceId, FieldId, Graph, Id, Jet, LinearSystem, Node, Rational, Table, Variable,
+};
+use crate::model::{Balance, Closure};
+use landau_contract::Id as _;
 use num_traits::One;
 
 /// A bordering of the problem at k = 0. Densities are Σ weight(y) · jets.
@@ -23,34 +26,34 @@ pub enum CaseClosure {
         /// Jets and weights of the integral.
         density: Vec<(Jet, Id)>,
         /// Balances that the multiplier enters, with weights.
-        column: Vec<(usize, Id)>,
+        column: Vec<(BalanceId, Id)>,
     },
     /// The same, claimed by the spec: to be recognised in the collocated problem, or dropped.
     Claimed {
         /// Jets and weights of the integral.
         density: Vec<(Jet, Id)>,
         /// Balances that the multiplier enters, with weights.
-        column: Vec<(usize, Id)>,
+        column: Vec<(BalanceId, Id)>,
     },
     /// The constant of a field is arbitrary: ∫ field = 0.
     Gauge {
-        /// Which field, by position.
-        field: usize,
+        /// Which field.
+        field: FieldId,
         /// Balances that the multiplier enters, with weights.
-        column: Vec<(usize, Id)>,
+        column: Vec<(BalanceId, Id)>,
     },
     /// The constant of a field with a time derivative is arbitrary, and may drift: ∫ field = 0, and the
     /// multiplier, which enters where the time derivative does, is the rate of the drift.
     Drift {
-        /// Which field, by position.
-        field: usize,
+        /// Which field.
+        field: FieldId,
         /// Balances that the multiplier enters, with weights.
-        column: Vec<(usize, Id)>,
+        column: Vec<(BalanceId, Id)>,
     },
     /// The number `field` is unknown: ∫ density = 0.
     Unknown {
-        /// Which field, by position.
-        field: usize,
+        /// Which field.
+        field: FieldId,
         /// Jets and weights of the integral.
         density: Vec<(Jet, Id)>,
     },
@@ -103,7 +106,7 @@ pub(super) fn derive(
         let proved = column.filter(|c| conserved(deriver, problem, walls, rules, c, &closures));
         if let Some(column) = proved {
             closures.push(CaseClosure::Conserved { density, column });
-        } else if declared && has_massless(problem.linear, model.balances.len()) {
+        } else if declared && has_massless(problem.linear, &model.balances) {
             let column = carried(deriver, problem.linear, &density);
             closures.push(CaseClosure::Claimed { density, column });
         }
@@ -150,12 +153,16 @@ pub(super) fn drop_refuted(cases: &mut [Case]) {
 }
 
 /// Whether some balance holds no time derivative.
-pub(super) fn has_massless(linear: &[Term], balances: usize) -> bool {
-    (0..balances).any(|row| !linear.iter().any(|t| t.row == row && t.jet.t > 0))
+pub(super) fn has_massless(linear: &[DirectTerm], balances: &Table<BalanceId, Balance>) -> bool {
+    balances.ids().any(|row| !linear.iter().any(|t| t.row == row && t.jet.t > 0))
 }
 
 /// The density as the mass matrix carries it into the balances.
-fn carried(deriver: &mut Deriver, linear: &[Term], density: &[(Jet, Id)]) -> Vec<(usize, Id)> {
+fn carried(
+    deriver: &mut Deriver,
+    linear: &[DirectTerm],
+    density: &[(Jet, Id)],
+) -> Vec<(BalanceId, Id)> {
     let mut column = Vec::new();
     for (jet, weight) in density {
         let time = Jet { t: 1, ..*jet };
@@ -172,7 +179,7 @@ fn gauge(
     problem: &CaseProblem,
     walls: &Walls,
     rules: &BaseRules,
-    field: usize,
+    field: FieldId,
 ) -> Result<CaseClosure, (String, &'static str)> {
     let model = deriver.model;
     let name = &model.fields[field].name;
@@ -195,7 +202,7 @@ fn gauge(
             "a field of which only derivatives enter the balances",
         ));
     }
-    let mass: Vec<(usize, Id)> = problem
+    let mass: Vec<(BalanceId, Id)> = problem
         .linear
         .iter()
         .filter(|t| {
@@ -213,13 +220,9 @@ fn gauge(
             column: mass,
         });
     }
-    let paired = problem
-        .pairing
-        .iter()
-        .position(|f| *f == field)
-        .unwrap_or(0);
-    let others = (0..model.balances.len()).filter(|&row| row != paired);
-    for row in std::iter::once(paired).chain(others) {
+    let paired = problem.pairing.position(|f| *f == field);
+    let others = model.balances.ids().filter(|row| Some(*row) != paired);
+    for row in paired.into_iter().chain(others) {
         for weight in null_candidates(deriver, problem, row) {
             let column = vec![(row, weight)];
             if conserved(deriver, problem, walls, rules, &column, &[]) {
@@ -227,18 +230,16 @@ fn gauge(
             }
         }
     }
+    let balance = paired.map_or("no balance", |row| model.balances[row].name.as_str());
     Err((
-        format!(
-            "the constant of `{name}` is not free: `{}` does not integrate to zero",
-            model.balances[paired].name
-        ),
+        format!("the constant of `{name}` is not free: `{balance}` does not integrate to zero"),
         "a gauge whose balance is a divergence, without flux through the ends",
     ))
 }
 
 /// Weights under which a balance may be a divergence: its divisor times powers of what its coefficients are
 /// divided by, such as r for ∂r u + u/r.
-fn null_candidates(deriver: &mut Deriver, problem: &CaseProblem, row: usize) -> Vec<Id> {
+fn null_candidates(deriver: &mut Deriver, problem: &CaseProblem, row: BalanceId) -> Vec<Id> {
     let graph = &mut *deriver.graph;
     let mut bases: Vec<Id> = Vec::new();
     let coefficients = problem
@@ -288,84 +289,35 @@ fn density(form: &Form) -> Vec<(Jet, Id)> {
 /// ℓ with M0†ℓ = density, by Gaussian elimination on the mass matrix.
 fn multiplier(
     deriver: &mut Deriver,
-    linear: &[Term],
+    linear: &[DirectTerm],
     density: &[(Jet, Id)],
-) -> Option<Vec<(usize, Id)>> {
+) -> Option<Vec<(BalanceId, Id)>> {
     let graph = &mut *deriver.graph;
     if density.is_empty() || density.iter().any(|(j, _)| j.y > 0) {
         return None;
     }
-    let rows = linear.iter().map(|t| t.row + 1).max().unwrap_or(0);
-    let zero = graph.zero();
-    let fields: Vec<usize> = {
-        let mut fields: Vec<usize> = linear
-            .iter()
-            .filter(|t| t.jet.t == 1)
-            .map(|t| usize::from(t.jet.field))
-            .collect();
-        fields.extend(density.iter().map(|(j, _)| usize::from(j.field)));
-        fields.sort_unstable();
-        fields.dedup();
-        fields
-    };
-    // One equation for each field: Σ_i m_ij ℓ_i = w_j.
-    let mut system: Vec<Vec<Id>> = Vec::new();
-    for &field in &fields {
-        let mut equation = vec![zero; rows + 1];
-        for term in linear
-            .iter()
-            .filter(|t| usize::from(t.jet.field) == field && t.jet.t == 1)
-        {
-            if term.jet.x == 0 && term.jet.absx == 0 && term.jet.y == 0 {
-                equation[term.row] = term.coefficient;
-            }
-        }
-        for (jet, weight) in density
-            .iter()
-            .filter(|(j, _)| usize::from(j.field) == field)
-        {
-            debug_assert!(jet.y == 0);
-            equation[rows] = *weight;
-        }
-        system.push(equation);
-    }
-    let mut pivots = Vec::new();
-    let mut rank = 0;
-    for column in 0..rows {
-        let Some(found) = (rank..system.len()).find(|&r| !graph.vanishes(system[r][column])) else {
-            continue;
-        };
-        system.swap(rank, found);
-        let pivot = system[rank][column];
-        for entry in &mut system[rank] {
-            *entry = graph.divide_terms(*entry, pivot);
-        }
-        let row = system[rank].clone();
-        for (r, other) in system.iter_mut().enumerate() {
-            let factor = other[column];
-            if r == rank || graph.vanishes(factor) {
-                continue;
-            }
-            for (entry, &by) in other.iter_mut().zip(&row) {
-                let product = graph.mul(factor, by);
-                *entry = graph.sub(*entry, product);
-            }
-        }
-        pivots.push((rank, column));
-        rank += 1;
-    }
-    if system[rank..]
+    let mut fields: Vec<FieldId> = linear
         .iter()
-        .any(|equation| !graph.vanishes(equation[rows]))
-    {
-        return None;
+        .filter(|t| t.jet.t == 1)
+        .map(|t| t.jet.of)
+        .chain(density.iter().map(|(jet, _)| jet.of))
+        .collect();
+    fields.sort_unstable();
+    fields.dedup();
+    // One equation for each field: Σ_i m_ij ℓ_i = w_j.
+    let mut system = LinearSystem::new(graph, deriver.model.balances.len());
+    for field in fields {
+        let mass = linear.iter().filter(|t| t.jet.of == field && t.jet.t == 1);
+        let plain = mass.filter(|t| t.jet.x == 0 && t.jet.absx == 0 && t.jet.y == 0);
+        let coefficients = plain.map(|t| (t.row.index(), t.coefficient)).collect();
+        let weight = density.iter().find(|(jet, _)| jet.of == field);
+        system.equation(graph, coefficients, weight.map(|(_, weight)| *weight));
     }
-    let solution = pivots
-        .into_iter()
-        .map(|(r, column)| (column, system[r][rows]));
+    let solution = system.solve(graph)?.into_iter();
     Some(
         solution
             .filter(|(_, weight)| !graph.vanishes(*weight))
+            .map(|(row, weight)| (BalanceId::at(row), weight))
             .collect(),
     )
 }
@@ -377,12 +329,11 @@ fn conserved(
     problem: &CaseProblem,
     walls: &Walls,
     rules: &BaseRules,
-    column: &[(usize, Id)],
+    column: &[(BalanceId, Id)],
     known: &[CaseClosure],
 ) -> bool {
-    let profiles = deriver.uniform.iter().filter(|u| !**u).count();
-    let mut image = Vec::with_capacity(profiles);
-    for field in 0..profiles {
+    let mut image: Table<FieldId, Id> = Table::default();
+    for field in deriver.model.profiles() {
         let mut total = deriver.graph.zero();
         for term in problem
             .adjoint
@@ -391,7 +342,7 @@ fn conserved(
         {
             let Some((_, weight)) = column
                 .iter()
-                .find(|(row, _)| *row == usize::from(term.jet.field))
+                .find(|(row, _)| *row == term.jet.of)
             else {
                 continue;
             };
@@ -425,7 +376,7 @@ fn conserved(
             for (jet, id) in at_zero_wavenumber(combination) {
                 let Some((_, weight)) = column
                     .iter()
-                    .find(|(row, _)| *row == usize::from(jet.field))
+                    .find(|(row, _)| *row == jet.of)
                 else {
                     continue;
                 };
@@ -443,22 +394,20 @@ fn conserved(
 }
 
 /// Whether Σ image_f q_f is a constant times the density of a conserved integral.
-fn is_multiple(graph: &mut Graph, image: &[Id], closure: &CaseClosure) -> bool {
+fn is_multiple(graph: &mut Graph, image: &Table<FieldId, Id>, closure: &CaseClosure) -> bool {
     let CaseClosure::Conserved { density, .. } = closure else {
         return false;
     };
     let Some((first, weight)) = density.first() else {
         return false;
     };
-    let factor = graph.divide_terms(image[usize::from(first.field)], *weight);
+    let factor = graph.divide_terms(image[first.of], *weight);
     let slope = graph.differentiate(factor, Variable::AlongBase);
     if !graph.vanishes(slope) {
         return false;
     }
-    (0..image.len()).all(|field| {
-        let own = density
-            .iter()
-            .find(|(jet, _)| usize::from(jet.field) == field);
+    image.ids().all(|field| {
+        let own = density.iter().find(|(jet, _)| jet.of == field);
         let expected = match own {
             Some((_, weight)) => graph.mul(factor, *weight),
             None => graph.zero(),

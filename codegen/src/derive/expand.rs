@@ -5,7 +5,10 @@
 //! that coefficients such as p⁰_nny come out as the literature writes them.
 
 use super::form::Form;
-use crate::graph::{Function, Graph, Id, Jet, LawAtom, Node, Operator, Rational, Variable};
+use super::open::Dependence;
+use crate::graph::{
+    FieldId, Function, Graph, Id, Jet, LawAtom, Node, Operator, ParameterId, Rational, Table, Variable,
+};
 use num_traits::{One, Zero};
 use std::collections::HashMap;
 
@@ -23,11 +26,11 @@ pub struct Inexpandable(pub String);
 pub struct Expander<'a> {
     pub order: usize,
     /// Closed form of each base field, where there is one.
-    pub closed: &'a [Option<Id>],
+    pub closed: &'a Table<FieldId, Option<Id>>,
     /// Fields that are numbers: their derivatives vanish.
-    pub uniform: &'a [bool],
+    pub uniform: &'a Table<FieldId, bool>,
     /// Fields that each law depends on.
-    pub dependence: &'a [Vec<bool>],
+    pub dependence: &'a Dependence,
     memo: HashMap<Id, Form>,
 }
 
@@ -36,9 +39,9 @@ type Expanded = Result<Form, Inexpandable>;
 impl<'a> Expander<'a> {
     pub fn new(
         order: usize,
-        closed: &'a [Option<Id>],
-        uniform: &'a [bool],
-        dependence: &'a [Vec<bool>],
+        closed: &'a Table<FieldId, Option<Id>>,
+        uniform: &'a Table<FieldId, bool>,
+        dependence: &'a Dependence,
     ) -> Self {
         Expander {
             order,
@@ -127,14 +130,14 @@ impl<'a> Expander<'a> {
         if !jet.is_base() {
             return graph.zero();
         }
-        base_value(graph, self.closed, usize::from(jet.field), jet.y)
+        base_value(graph, self.closed, jet.of, jet.y)
     }
 
     fn without_uniform(&self, mut form: Form) -> Form {
         form.terms.retain(|monomial, _| {
             monomial
                 .iter()
-                .all(|j| !self.uniform[usize::from(j.field)] || *j == Jet::value(j.field.into()))
+                .all(|j| !self.uniform[j.of] || *j == Jet::value(j.of))
         });
         form
     }
@@ -193,9 +196,8 @@ impl<'a> Expander<'a> {
     /// Σ_α law⁰_α/α! Π δ_f^α_f over the fields the law depends on.
     fn law_series(&mut self, graph: &mut Graph, atom: &LawAtom) -> Form {
         let mut form = Form::default();
-        let fields: Vec<usize> = (0..self.uniform.len())
-            .filter(|&f| self.dependence[atom.law][f])
-            .collect();
+        let depends = &self.dependence[atom.law];
+        let fields: Vec<FieldId> = depends.ids().filter(|&f| depends[f]).collect();
         let mut open = vec![(atom.clone(), Vec::<Jet>::new(), Rational::one(), 0)];
         while let Some((atom, monomial, factor, first)) = open.pop() {
             if monomial.len() < self.order {
@@ -218,7 +220,7 @@ impl<'a> Expander<'a> {
 }
 
 /// ∂y^order of a base field: an atom where the base is solved for, an expression where it is given.
-pub fn base_value(graph: &mut Graph, closed: &[Option<Id>], field: usize, order: u8) -> Id {
+pub fn base_value(graph: &mut Graph, closed: &Table<FieldId, Option<Id>>, field: FieldId, order: u8) -> Id {
     match closed[field] {
         None => graph.base(field, order),
         Some(mut value) => {
@@ -230,7 +232,7 @@ pub fn base_value(graph: &mut Graph, closed: &[Option<Id>], field: usize, order:
     }
 }
 
-fn select(graph: &mut Graph, switch: usize, forms: &[Form]) -> Form {
+fn select(graph: &mut Graph, switch: ParameterId, forms: &[Form]) -> Form {
     let mut chosen = Form::default();
     let zero = graph.zero();
     let monomials: std::collections::BTreeSet<_> =

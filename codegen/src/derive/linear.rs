@@ -3,26 +3,32 @@
 //! L = Σ c(y) ∂x^a |∂x|^b ∂y^d per (row, field); the mass matrix M0 likewise, with one ∂t.
 
 use super::form::Form;
-use crate::graph::{Graph, Id, Jet, Rational, Variable};
+use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Rational, Table, Variable};
 use num_traits::One;
 use std::collections::BTreeMap;
 
-/// coefficient(y) · ∂(jet) in one row; `jet.field` is the column.
+/// coefficient(y) · ∂(jet): a term of an operator from columns to rows.
 #[derive(Clone, Copy, Debug)]
-pub struct Term {
-    /// Which row, by position.
-    pub row: usize,
+pub struct Term<Row, Column> {
+    /// Where it stands.
+    pub row: Row,
     /// The derivative it multiplies.
-    pub jet: Jet,
+    pub jet: Jet<Column>,
     /// Its coefficient.
     pub coefficient: Id,
 }
 
+/// A term of L or M0, which take fields to balances.
+pub type DirectTerm = Term<BalanceId, FieldId>;
+
+/// A term of L† or M0†, which take the adjoint fields of balances to fields.
+pub type AdjointTerm = Term<FieldId, BalanceId>;
+
 /// From M ∂t X − R = 0 expanded, one form a row: M0 (terms with one ∂t) and L (the others,
 /// moved to the right-hand side).
-pub fn linear_operator(graph: &mut Graph, forms: &[Form]) -> Vec<Term> {
+pub fn linear_operator(graph: &mut Graph, forms: &Table<BalanceId, Form>) -> Vec<DirectTerm> {
     let mut terms = Vec::new();
-    for (row, form) in forms.iter().enumerate() {
+    for (row, form) in forms.pairs() {
         for (monomial, &coefficient) in &form.degree(1).terms {
             let jet = monomial[0];
             let coefficient = if jet.t == 0 {
@@ -42,8 +48,8 @@ pub fn linear_operator(graph: &mut Graph, forms: &[Form]) -> Vec<Term> {
 
 /// L† and M0† by integration by parts, without the boundary terms:
 /// ⟨Y, c ∂x^a |∂x|^b ∂y^d X⟩ = ⟨(−1)^(a+d) ∂x^a |∂x|^b ∂y^d (c Y), X⟩ + …
-pub fn adjoint_operator(graph: &mut Graph, terms: &[Term]) -> Vec<Term> {
-    let mut sums: BTreeMap<(usize, Jet), Id> = BTreeMap::new();
+pub fn adjoint_operator(graph: &mut Graph, terms: &[DirectTerm]) -> Vec<AdjointTerm> {
+    let mut sums: BTreeMap<(FieldId, Jet<BalanceId>), Id> = BTreeMap::new();
     for term in terms {
         let order = term.jet.y;
         let odd = (term.jet.x + order) % 2 == 1;
@@ -52,9 +58,8 @@ pub fn adjoint_operator(graph: &mut Graph, terms: &[Term]) -> Vec<Term> {
         // ∂^d (c Y) = Σ_l binomial(d, l) c^(l) ∂^(d−l) Y
         for l in 0..=order {
             let jet = Jet {
-                field: term.row as u8,
                 y: order - l,
-                ..term.jet
+                ..term.jet.about(term.row)
             };
             let sign = if odd {
                 -binomial.clone()
@@ -62,7 +67,7 @@ pub fn adjoint_operator(graph: &mut Graph, terms: &[Term]) -> Vec<Term> {
                 binomial.clone()
             };
             let coefficient = graph.scale(derivative, sign);
-            let key = (usize::from(term.jet.field), jet);
+            let key = (term.jet.of, jet);
             let total = match sums.get(&key) {
                 Some(&present) => graph.add(present, coefficient),
                 None => coefficient,

@@ -23,17 +23,20 @@ pub use case::{AdjointCondition, Case};
 pub use closure::CaseClosure;
 pub use expand::base_value;
 pub use form::{Form, Monomial};
-pub use linear::Term;
+pub use linear::{AdjointTerm, DirectTerm, Term};
 pub use offsets::Offsets;
-pub use open::{Opener, carry_out, dependence};
+pub use open::{Dependence, Opener, carry_out, dependence};
 pub use parity::Parity;
 pub use wall::{BaseCondition, WallCondition};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};
-use crate::graph::{Graph, Id, Rational};
+use crate::graph::{
+    BalanceId, CaseId, FieldId, Graph, Id, ParameterId, Rational, Table,
+};
 use crate::model::Model;
 use base::BaseProblem;
 use expand::{Expander, Inexpandable};
+use landau_contract::{BaseRowId, SolvedId};
 use num_traits::One;
 
 /// More cases of structural switches than any model needs.
@@ -52,35 +55,35 @@ pub struct Operators {
     /// Truncation order of the expansion.
     pub order: usize,
     /// M ∂t X − R of each balance, expanded, not divided.
-    pub balances: Vec<Form>,
+    pub balances: Table<BalanceId, Form>,
     /// What each balance is divided by (1 where the spec says nothing).
-    pub divisors: Vec<Id>,
+    pub divisors: Table<BalanceId, Id>,
     /// L and M0, divided.
-    pub linear: Vec<Term>,
-    /// L† and M0†; rows are fields, `jet.field` is a balance.
-    pub adjoint: Vec<Term>,
+    pub linear: Vec<DirectTerm>,
+    /// L† and M0†.
+    pub adjoint: Vec<AdjointTerm>,
     /// N2, N3, … : `nonlinear[d − 2][row]`, divided, on the right-hand side.
-    pub nonlinear: Vec<Vec<Form>>,
+    pub nonlinear: Vec<Table<BalanceId, Form>>,
     /// Values and points of L's fields and balances.
-    pub offsets: Offsets,
-    /// Values and points of L†, whose columns are balances and whose rows are fields.
-    pub adjoint_offsets: Offsets,
+    pub offsets: Offsets<BalanceId, FieldId>,
+    /// Values and points of L†.
+    pub adjoint_offsets: Offsets<FieldId, BalanceId>,
     /// The field that each balance determines.
-    pub pairing: Vec<usize>,
+    pub pairing: Table<BalanceId, FieldId>,
     /// Odd fields and balances, where the model has the mirror symmetry.
     pub parity: Option<Parity>,
     /// Balances that determine the base state, or have to hold for it.
-    pub base: Vec<BaseRow>,
+    pub base: Table<BaseRowId, BaseRow>,
     /// Points of `base` and values of `solved`.
-    pub base_offsets: Offsets,
+    pub base_offsets: Offsets<BaseRowId, SolvedId>,
     /// Fields that the base state is solved for, numbers last.
-    pub solved: Vec<usize>,
+    pub solved: Table<SolvedId, FieldId>,
     /// Integral conditions of the base state: integrand and value.
     pub base_integrals: Vec<(Id, Id)>,
     /// Switches that change boundary conditions.
-    pub switches: Vec<usize>,
+    pub switches: Vec<ParameterId>,
     /// One for each combination of their choices.
-    pub cases: Vec<Case>,
+    pub cases: Table<CaseId, Case>,
     /// Output functionals, expanded.
     pub outputs: Vec<Form>,
 }
@@ -108,13 +111,13 @@ pub(crate) struct Deriver<'a> {
     pub model: &'a Model,
     pub graph: &'a mut Graph,
     pub order: usize,
-    pub uniform: Vec<bool>,
-    pub dependence: Vec<Vec<bool>>,
+    pub uniform: Table<FieldId, bool>,
+    pub dependence: Dependence,
 }
 
 impl<'a> Deriver<'a> {
     fn new(model: &'a Model, graph: &'a mut Graph, order: usize) -> Self {
-        let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
+        let uniform = model.fields.map(|f| f.uniform);
         let dependence = open::dependence(graph, &model.laws, uniform.len());
         Deriver {
             model,
@@ -127,12 +130,12 @@ impl<'a> Deriver<'a> {
 
     fn run(mut self, mistakes: &mut Vec<Diagnostic>) -> Option<Operators> {
         let model = self.model;
-        let profiles = self.uniform.iter().filter(|u| !**u).count();
+        let profiles = model.profiles().count();
         if !self.check_counts(profiles, mistakes) {
             return None;
         }
         // expansion
-        let mut balances = Vec::new();
+        let mut balances: Table<BalanceId, Form> = Table::default();
         for balance in &model.balances {
             balances.extend(self.expand(balance.residual, &balance.location, mistakes));
         }
@@ -140,7 +143,7 @@ impl<'a> Deriver<'a> {
             return None;
         }
         let divisors = self.divisors();
-        let divided: Vec<Form> = balances
+        let divided: Table<BalanceId, Form> = balances
             .iter()
             .zip(&divisors)
             .map(|(form, &divisor)| {
@@ -157,9 +160,9 @@ impl<'a> Deriver<'a> {
         let nonlinear = (2..=self.order)
             .map(|d| self.nonlinear(&divided, d))
             .collect();
-        let given: Vec<_> = model.balances.iter().map(|b| b.paired_field).collect();
-        let Some(pairing) = pairing::pair(&linear, balances.len(), profiles, &given) else {
-            let place = model.balances[0].location.clone();
+        let given = model.balances.map(|b| b.paired_field);
+        let Some(pairing) = pairing::pair(&linear, profiles, &given) else {
+            let place = model.balances[BalanceId(0)].location.clone();
             let message = "the balances cannot be paired with the fields";
             mistakes.push(Diagnostic::new(
                 place,
@@ -168,7 +171,7 @@ impl<'a> Deriver<'a> {
             ));
             return None;
         };
-        self.check_determined(&linear, profiles, mistakes);
+        self.check_determined(&linear, mistakes);
         let (offsets, adjoint_offsets) = self.offsets(&linear, &adjoint, profiles, mistakes)?;
         // base state
         let problem = self.base_problem(&balances, mistakes)?;
@@ -181,7 +184,7 @@ impl<'a> Deriver<'a> {
         } = problem;
         // boundary conditions, adjoint conditions, closures: one set for each case of the switches
         let switches = self.switches();
-        let mut cases = Vec::new();
+        let mut cases: Table<CaseId, Case> = Table::default();
         for choices in self.choices(&switches, mistakes)? {
             let problem = wall::CaseProblem {
                 balances: &balances,
@@ -233,18 +236,19 @@ impl<'a> Deriver<'a> {
     /// How L and L† are collocated.
     fn offsets(
         &self,
-        linear: &[Term],
-        adjoint: &[Term],
+        linear: &[DirectTerm],
+        adjoint: &[AdjointTerm],
         profiles: usize,
         mistakes: &mut Vec<Diagnostic>,
-    ) -> Option<(Offsets, Offsets)> {
-        let rows = self.model.balances.len();
-        let of = |terms, rows, columns| offsets::offsets(&offsets::orders(terms, rows, columns));
-        let found = of(linear, rows, profiles).zip(of(adjoint, profiles, rows));
+    ) -> Option<(Offsets<BalanceId, FieldId>, Offsets<FieldId, BalanceId>)> {
+        let balances = self.model.balances.len();
+        let direct = offsets::offsets(&offsets::orders(linear, balances, profiles));
+        let mirrored = offsets::offsets(&offsets::orders(adjoint, profiles, balances));
+        let found = direct.zip(mirrored);
         if found.is_none() {
             let message = "the balances do not determine the fields";
             let expected = "balances that can be solved for one field each";
-            let place = self.model.balances[0].location.clone();
+            let place = self.model.balances[BalanceId(0)].location.clone();
             mistakes.push(Diagnostic::new(place, message, expected));
         }
         found
@@ -293,8 +297,8 @@ impl<'a> Deriver<'a> {
         self.graph.vanishes(opened)
     }
 
-    fn divisors(&mut self) -> Vec<Id> {
-        let mut divisors = Vec::new();
+    fn divisors(&mut self) -> Table<BalanceId, Id> {
+        let mut divisors = Table::default();
         for balance in &self.model.balances {
             let divisor = balance.divisor.and_then(|d| self.base_part(d));
             divisors.push(divisor.unwrap_or_else(|| self.graph.one()));
@@ -302,7 +306,11 @@ impl<'a> Deriver<'a> {
         divisors
     }
 
-    fn nonlinear(&mut self, divided: &[Form], degree: usize) -> Vec<Form> {
+    fn nonlinear(
+        &mut self,
+        divided: &Table<BalanceId, Form>,
+        degree: usize,
+    ) -> Table<BalanceId, Form> {
         let minus = -Rational::one();
         divided
             .iter()
@@ -315,13 +323,13 @@ impl<'a> Deriver<'a> {
     }
 
     /// Switches that guard boundary conditions.
-    fn switches(&self) -> Vec<usize> {
+    fn switches(&self) -> Vec<ParameterId> {
         let conditions = self
             .model
             .boundary
             .iter()
             .chain(&self.model.base.conditions);
-        let mut switches: Vec<usize> = conditions
+        let mut switches: Vec<ParameterId> = conditions
             .flat_map(|c| c.guard.iter().map(|(switch, _)| *switch))
             .collect();
         switches.sort_unstable();
@@ -331,7 +339,7 @@ impl<'a> Deriver<'a> {
 
     fn choices(
         &self,
-        switches: &[usize],
+        switches: &[ParameterId],
         mistakes: &mut Vec<Diagnostic>,
     ) -> Option<Vec<Vec<usize>>> {
         let mut all = vec![Vec::new()];

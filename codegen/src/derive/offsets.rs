@@ -14,26 +14,27 @@
 //! grids of P 4.2.
 
 use super::linear::Term;
+use landau_contract::{Id, Table};
 
 /// The smallest offsets of a system.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Offsets {
-    /// c_i: points of balance i beyond N.
-    pub rows: Vec<usize>,
-    /// t_j: values of field j beyond N.
-    pub columns: Vec<usize>,
+pub struct Offsets<Row, Column> {
+    /// c_i: points of row i beyond N.
+    pub rows: Table<Row, usize>,
+    /// t_j: values of column j beyond N.
+    pub columns: Table<Column, usize>,
     /// Σ t_j − Σ c_i: the number of boundary conditions.
     pub conditions: usize,
 }
 
 /// The smallest offsets, `orders[i][j]` being d_ij; `None` where the balances do not determine the fields.
-pub fn offsets(orders: &[Vec<Option<u8>>]) -> Option<Offsets> {
+pub fn offsets<Row, Column>(orders: &Orders<Row, Column>) -> Option<Offsets<Row, Column>> {
     let weights: Vec<Vec<Option<i64>>> = orders
         .iter()
         .map(|row| row.iter().map(|order| order.map(i64::from)).collect())
         .collect();
     let (total, assigned) = assign(&weights)?;
-    let fields = orders.first().map_or(0, Vec::len);
+    let fields = orders.first().map_or(0, |row| row.len());
     let mut rows = vec![0_i64; orders.len()];
     let mut columns = vec![0_i64; fields];
     // Each round raises what has to be raised; the assignment being of largest weight, it ends.
@@ -52,20 +53,25 @@ pub fn offsets(orders: &[Vec<Option<u8>>]) -> Option<Offsets> {
         }
         rows = raised;
     }
-    let counts = |list: Vec<i64>| list.into_iter().map(|n| n as usize).collect();
     Some(Offsets {
-        rows: counts(rows),
-        columns: counts(columns),
+        rows: rows.into_iter().map(|n| n as usize).collect(),
+        columns: columns.into_iter().map(|n| n as usize).collect(),
         conditions: total as usize,
     })
 }
 
-/// The highest y-derivative of each of the first `columns` fields in each row; `None` where the field is
-/// absent.
-pub fn orders(terms: &[Term], rows: usize, columns: usize) -> Vec<Vec<Option<u8>>> {
-    let mut table = vec![vec![None; columns]; rows];
-    for term in terms.iter().filter(|t| usize::from(t.jet.field) < columns) {
-        let entry: &mut Option<u8> = &mut table[term.row][usize::from(term.jet.field)];
+/// The highest y-derivative of each column in each row; `None` where it is absent.
+pub type Orders<Row, Column> = Table<Row, Table<Column, Option<u8>>>;
+
+/// The orders in which the first `columns` columns stand in an operator.
+pub fn orders<Row: Id, Column: Id>(
+    terms: &[Term<Row, Column>],
+    rows: usize,
+    columns: usize,
+) -> Orders<Row, Column> {
+    let mut table = Table::filled(rows, Table::filled(columns, None));
+    for term in terms.iter().filter(|t| t.jet.of.index() < columns) {
+        let entry: &mut Option<u8> = &mut table[term.row][term.jet.of];
         *entry = Some(entry.unwrap_or(0).max(term.jet.y));
     }
     table
@@ -112,14 +118,21 @@ pub fn assign(weights: &[Vec<Option<i64>>]) -> Option<(i64, Vec<usize>)> {
 #[cfg(test)]
 mod tests {
     use super::{Offsets, offsets};
+    use landau_contract::{BalanceId, FieldId, Id};
+
+    type Found = Offsets<BalanceId, FieldId>;
+
+    fn found(orders: &[Vec<Option<u8>>]) -> Option<Found> {
+        offsets(&orders.iter().map(|row| row.clone().into()).collect())
+    }
 
     fn check(orders: &[Vec<Option<u8>>], rows: &[usize], columns: &[usize], conditions: usize) {
         let expected = Offsets {
-            rows: rows.to_vec(),
-            columns: columns.to_vec(),
+            rows: rows.to_vec().into(),
+            columns: columns.to_vec().into(),
             conditions,
         };
-        assert_eq!(offsets(orders), Some(expected));
+        assert_eq!(found(orders), Some(expected));
     }
 
     #[test]
@@ -159,7 +172,7 @@ mod tests {
             vec![Some(1), Some(2), None],
             vec![None, Some(0), Some(2)],
         ];
-        let straight = offsets(&orders).expect("a determined system");
+        let straight = found(&orders).expect("a determined system");
         for rotation in 1..3 {
             let turned: Vec<Vec<Option<u8>>> = (0..3)
                 .map(|i| {
@@ -168,16 +181,19 @@ mod tests {
                         .collect()
                 })
                 .collect();
-            let turned = offsets(&turned).expect("a determined system");
+            let turned = found(&turned).expect("a determined system");
             for i in 0..3 {
-                assert_eq!(turned.rows[i], straight.rows[(i + rotation) % 3]);
-                assert_eq!(turned.columns[i], straight.columns[(i + 2 * rotation) % 3]);
+                let (row, column) = ((i + rotation) % 3, (i + 2 * rotation) % 3);
+                let (i, row) = (BalanceId::at(i), BalanceId::at(row));
+                assert_eq!(turned.rows[i], straight.rows[row]);
+                let (i, column) = (FieldId::at(i.index()), FieldId::at(column));
+                assert_eq!(turned.columns[i], straight.columns[column]);
             }
         }
     }
 
     #[test]
     fn two_balances_for_one_field() {
-        assert_eq!(offsets(&[vec![Some(1), None], vec![Some(2), None]]), None);
+        assert_eq!(found(&[vec![Some(1), None], vec![Some(2), None]]), None);
     }
 }

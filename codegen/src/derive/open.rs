@@ -3,21 +3,21 @@
 //! This happens last, when kernels are made; until then L, N2 and N3 do not depend on the closure.
 
 use super::expand::base_value;
-use crate::graph::{Graph, Id, Jet, LawAtom, Node, Operator, Variable};
+use crate::graph::{FieldId, Graph, Id, Jet, LawAtom, LawId, Node, Operator, Table, Variable};
 use crate::model::Law;
 use std::collections::HashMap;
 
 /// Replaces laws by their closed forms.
 pub struct Opener<'a> {
-    laws: &'a [Law],
-    closed: &'a [Option<Id>],
-    uniform: &'a [bool],
+    laws: &'a Table<LawId, Law>,
+    closed: &'a Table<FieldId, Option<Id>>,
+    uniform: &'a Table<FieldId, bool>,
     partials: HashMap<LawAtom, Id>,
 }
 
 impl<'a> Opener<'a> {
     /// Of the given parts.
-    pub fn new(laws: &'a [Law], closed: &'a [Option<Id>], uniform: &'a [bool]) -> Self {
+    pub fn new(laws: &'a Table<LawId, Law>, closed: &'a Table<FieldId, Option<Id>>, uniform: &'a Table<FieldId, bool>) -> Self {
         Opener {
             laws,
             closed,
@@ -51,7 +51,7 @@ impl<'a> Opener<'a> {
         );
         let closed = self.closed;
         let mut value = graph.substitute(partial, &mut |graph, node| match node {
-            Node::Jet(jet) => Some(base_value(graph, closed, usize::from(jet.field), jet.y)),
+            Node::Jet(jet) => Some(base_value(graph, closed, jet.of, jet.y)),
             _ => None,
         });
         // p⁰_ny = d/dy p_n(n⁰(y), T⁰(y), y)
@@ -83,7 +83,7 @@ impl<'a> Opener<'a> {
         if let Some(&known) = self.partials.get(atom) {
             return known;
         }
-        let value = if let Some(field) = atom.index.iter().position(|&order| order > 0) {
+        let value = if let Some(field) = atom.index.position(|&order| order > 0) {
             let mut lower = atom.clone();
             lower.index[field] -= 1;
             let lower = self.partial(graph, &lower);
@@ -107,7 +107,7 @@ impl<'a> Opener<'a> {
 }
 
 /// Replaces each unevaluated derivative by what the chain rule gives.
-pub fn carry_out(graph: &mut Graph, id: Id, uniform: &[bool]) -> Id {
+pub fn carry_out(graph: &mut Graph, id: Id, uniform: &Table<FieldId, bool>) -> Id {
     let mut done: HashMap<Id, Id> = HashMap::new();
     // Children come first, so that inner derivatives are carried out before outer ones.
     for node in graph.topological(&[id]) {
@@ -123,11 +123,7 @@ pub fn carry_out(graph: &mut Graph, id: Id, uniform: &[bool]) -> Id {
     }
     let carried = replace_derivatives(graph, id, &done);
     graph.substitute(carried, &mut |graph, node| match node {
-        Node::Jet(jet)
-            if uniform[usize::from(jet.field)] && *jet != Jet::value(jet.field.into()) =>
-        {
-            Some(graph.zero())
-        }
+        Node::Jet(jet) if uniform[jet.of] && *jet != Jet::value(jet.of) => Some(graph.zero()),
         _ => None,
     })
 }
@@ -155,17 +151,20 @@ fn abs_dx(graph: &mut Graph, id: Id) -> Id {
     graph.sub(raised, rest)
 }
 
-/// For each law the fields that it depends on.
-pub fn dependence(graph: &Graph, laws: &[Law], fields: usize) -> Vec<Vec<bool>> {
-    let mut table: Vec<Vec<bool>> = Vec::with_capacity(laws.len());
+/// For each law, which fields it depends on.
+pub type Dependence = Table<LawId, Table<FieldId, bool>>;
+
+/// For each law, which fields it depends on.
+pub fn dependence(graph: &Graph, laws: &Table<LawId, Law>, fields: usize) -> Dependence {
+    let mut table = Dependence::default();
     for law in laws {
-        let mut depends = vec![false; fields];
+        let mut depends: Table<FieldId, bool> = Table::filled(fields, false);
         for node in graph.topological(&[law.body]) {
             match graph.node(node) {
-                Node::Jet(jet) => depends[usize::from(jet.field)] = true,
+                Node::Jet(jet) => depends[jet.of] = true,
                 // A law may use those declared before it.
                 Node::StateLaw(atom) => {
-                    for (here, there) in depends.iter_mut().zip(&table[atom.law]) {
+                    for (here, there) in depends.iter_mut().zip(table[atom.law].iter()) {
                         *here |= there;
                     }
                 }

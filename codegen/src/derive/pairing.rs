@@ -1,35 +1,35 @@
 //! The field that each balance determines: what an adjoint field is called after.
 
-use super::linear::Term;
+use super::linear::DirectTerm;
 use super::offsets::{assign, orders};
+use landau_contract::{BalanceId, FieldId, Id, Table};
 
 /// The field that each balance determines: the one whose ∂t it holds; what is left
 /// (continuity and pressure, definitions and auxiliary fields) by the derivatives held.
 pub fn pair(
-    terms: &[Term],
-    rows: usize,
+    terms: &[DirectTerm],
     fields: usize,
-    given: &[Option<usize>],
-) -> Option<Vec<usize>> {
-    let orders = orders(terms, rows, fields);
-    let mut weights = vec![vec![Some(0_i64); fields]; rows];
-    for (row, line) in weights.iter_mut().enumerate() {
-        for (field, weight) in line.iter_mut().enumerate() {
-            *weight = match (given[row], orders[row][field]) {
+    given: &Table<BalanceId, Option<FieldId>>,
+) -> Option<Table<BalanceId, FieldId>> {
+    let orders = orders(terms, given.len(), fields);
+    let mut weights: Vec<Vec<Option<i64>>> = Vec::with_capacity(given.len());
+    for (row, orders) in orders.pairs() {
+        let weight = |(field, order): (FieldId, &Option<u8>)| match (given[row], *order) {
                 (Some(wanted), _) => (wanted == field).then_some(1000),
                 // A field may be paired with a balance that does not hold it (pressure), but for want
                 // of a better one only.
                 (None, None) => Some(0),
                 (None, Some(order)) => Some(1 + i64::from(order)),
-            };
-        }
+        };
+        weights.push(orders.pairs().map(weight).collect());
     }
-    let profiles = |t: &&Term| usize::from(t.jet.field) < fields;
+    let profiles = |t: &&DirectTerm| t.jet.of.index() < fields;
     for term in terms.iter().filter(profiles).filter(|t| t.jet.t > 0) {
-        if let Some(weight) = &mut weights[term.row][usize::from(term.jet.field)] {
+        if let Some(weight) = &mut weights[term.row.index()][term.jet.of.index()] {
             // ∂t of the field itself before ∂t under derivatives, either before everything else.
             *weight += if term.jet.y == 0 { 100 } else { 50 };
         }
     }
-    assign(&weights).map(|(_, pairing)| pairing)
+    let (_, pairing) = assign(&weights)?;
+    Some(pairing.into_iter().map(FieldId::at).collect())
 }

@@ -5,14 +5,16 @@
 //! expanded balances and never declared.
 
 use super::form::Form;
+use crate::graph::{BalanceId, FieldId, Table};
+use landau_contract::Id as _;
 
 /// `true` is odd: the field (or balance) changes sign in the mirror.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Parity {
-    /// In the order of their declaration.
-    pub fields: Vec<bool>,
+    /// By field.
+    pub fields: Table<FieldId, bool>,
     /// By balance.
-    pub rows: Vec<bool>,
+    pub rows: Table<BalanceId, bool>,
 }
 
 /// The parity of a model, or `None` where it has no such symmetry.
@@ -26,7 +28,7 @@ pub fn parity(forms: &[Form], walls: &[&Form], fields: usize) -> Option<Parity> 
             let mut equation = vec![false; unknowns + 1];
             equation[fields + row] = true;
             for jet in monomial {
-                equation[usize::from(jet.field)] ^= true;
+                equation[jet.of.index()] ^= true;
                 equation[unknowns] ^= jet.x % 2 == 1;
             }
             system.push(equation);
@@ -34,8 +36,8 @@ pub fn parity(forms: &[Form], walls: &[&Form], fields: usize) -> Option<Parity> 
     }
     let signs = solve(system, unknowns)?;
     Some(Parity {
-        fields: signs[..fields].to_vec(),
-        rows: signs[fields..fields + forms.len()].to_vec(),
+        fields: signs[..fields].to_vec().into(),
+        rows: signs[fields..fields + forms.len()].to_vec().into(),
     })
 }
 

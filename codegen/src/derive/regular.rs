@@ -6,9 +6,9 @@
 
 use super::Deriver;
 use super::boundary::{Combination, split};
-use super::linear::Term;
+use super::linear::AdjointTerm;
 use super::wall::{BaseRules, at_end};
-use crate::graph::{Graph, Id, Node, Variable};
+use crate::graph::{BalanceId, FieldId, Graph, Id, Node, Variable};
 use crate::model::End;
 use num_traits::{Signed, Zero};
 use std::collections::BTreeMap;
@@ -29,11 +29,11 @@ pub(super) fn divides_by_zero(graph: &Graph, id: Id) -> bool {
 /// What regularity asks of the adjoint fields at an end, the conditions of highest derivative first.
 pub(super) fn conditions(
     deriver: &mut Deriver,
-    adjoint: &[Term],
+    adjoint: &[AdjointTerm],
     end: End,
     rules: &BaseRules,
-) -> Vec<Combination> {
-    let mut rows: BTreeMap<usize, Vec<Term>> = BTreeMap::new();
+) -> Vec<Combination<BalanceId>> {
+    let mut rows: BTreeMap<FieldId, Vec<AdjointTerm>> = BTreeMap::new();
     for term in adjoint {
         rows.entry(term.row).or_default().push(*term);
     }
@@ -41,7 +41,7 @@ pub(super) fn conditions(
     for terms in rows.into_values() {
         found.extend(leading(deriver, &terms, end, rules));
     }
-    let order = |c: &Combination| c.keys().map(|jet| jet.y).max();
+    let order = |c: &Combination<BalanceId>| c.keys().map(|jet| jet.y).max();
     found.sort_by_key(|c| std::cmp::Reverse(order(c)));
     found
 }
@@ -49,10 +49,10 @@ pub(super) fn conditions(
 /// The terms of lowest power in the distance from the end, where that is no power of all regular balances.
 fn leading(
     deriver: &mut Deriver,
-    terms: &[Term],
+    terms: &[AdjointTerm],
     end: End,
     rules: &BaseRules,
-) -> Option<Combination> {
+) -> Option<Combination<BalanceId>> {
     let place = deriver.place(end);
     let mut coefficients: Vec<Id> = terms.iter().map(|t| t.coefficient).collect();
     for _ in 0..=HIGHEST_POWER {

@@ -1,13 +1,16 @@
 //! What the two ends make of the operators: base conditions as rules, direct conditions reduced.
 
 use super::Deriver;
-use super::boundary::{Combination, Reduced, Simplifier, boundary_form, reduce, split};
+use super::boundary::{
+    BoundaryForm, Combination, Reduced, Simplifier, boundary_form, reduce, split,
+};
 use super::form::Form;
-use super::linear::Term;
-use crate::graph::{Graph, Id, Jet, Node, Rational, Variable};
+use super::linear::{AdjointTerm, DirectTerm};
+use crate::graph::{
+    BalanceId, FieldId, Graph, Id, Node, ParameterId, Rational, Table, Variable,
+};
 use crate::model::End;
 use num_traits::One;
-use std::collections::BTreeMap;
 
 /// A condition on the perturbation: B(X⁰ + X') − B(X⁰) = 0.
 #[derive(Clone, Debug)]
@@ -22,11 +25,11 @@ pub struct WallCondition {
 
 impl WallCondition {
     /// The field of the highest y-derivative in the linear part.
-    pub fn about(&self) -> Option<usize> {
+    pub fn about(&self) -> Option<FieldId> {
         let linear = self.form.degree(1);
         let jets = linear.terms.keys().map(|m| m[0]);
-        jets.max_by_key(|j| (j.y, std::cmp::Reverse((j.absx, j.x, j.field))))
-            .map(|j| usize::from(j.field))
+        jets.max_by_key(|j| (j.y, std::cmp::Reverse((j.absx, j.x, j.of))))
+            .map(|j| j.of)
     }
 }
 
@@ -43,35 +46,35 @@ pub struct BaseCondition {
 #[derive(Clone, Copy)]
 pub(super) struct CaseProblem<'a> {
     /// The balances expanded, not divided.
-    pub balances: &'a [Form],
+    pub balances: &'a Table<BalanceId, Form>,
     /// The conditions of this case.
     pub walls: &'a [WallCondition],
-    pub linear: &'a [Term],
-    pub adjoint: &'a [Term],
-    pub divisors: &'a [Id],
+    pub linear: &'a [DirectTerm],
+    pub adjoint: &'a [AdjointTerm],
+    pub divisors: &'a Table<BalanceId, Id>,
     /// How many boundary conditions the balances ask for.
     pub needed: usize,
-    pub pairing: &'a [usize],
-    pub solved: &'a [usize],
-    pub switches: &'a [usize],
+    pub pairing: &'a Table<BalanceId, FieldId>,
+    pub solved: &'a [FieldId],
+    pub switches: &'a [ParameterId],
     /// How many conditions the base state needs.
     pub base_conditions: usize,
 }
 
 /// The boundary form and what each end makes of it.
 pub(super) struct Walls {
-    pub form: BTreeMap<Jet, Combination>,
-    pub reduced: Vec<(End, Reduced)>,
+    pub form: BoundaryForm,
+    pub reduced: Vec<(End, Reduced<FieldId>)>,
 }
 
 /// What the base's own boundary conditions say at each end: base atom → expression.
-pub(super) type BaseRules = Vec<(End, (usize, u8), Id)>;
+pub(super) type BaseRules = Vec<(End, (FieldId, u8), Id)>;
 
 /// Solves each base condition that is linear in its highest base derivative for it.
 pub(super) fn base_rules(graph: &mut Graph, conditions: &[BaseCondition]) -> BaseRules {
     let mut rules = BaseRules::new();
     for condition in conditions {
-        let mut atoms: Vec<(u8, usize)> = Vec::new();
+        let mut atoms: Vec<(u8, FieldId)> = Vec::new();
         for node in graph.topological(&[condition.residual]) {
             if let Node::Base(field, order) = graph.node(node) {
                 atoms.push((*order, *field));

@@ -7,7 +7,7 @@
 
 use super::text::{Writer, signed_sum};
 use crate::derive::{Form, Monomial};
-use crate::graph::{Id, Jet, LawAtom, Node, Rational};
+use crate::graph::{Id, Jet, LawAtom, LawId, Node, Rational};
 use num_traits::{One, Signed};
 
 /// Π base^exponent.
@@ -26,7 +26,7 @@ type Outer = (Factors, Monomial);
 /// One product of a coefficient's sum, with the jets of its term.
 struct Piece {
     divided: bool,
-    law: Option<usize>,
+    law: Option<LawId>,
     number: Rational,
     inner: Expansion,
     outer: Outer,
@@ -54,7 +54,7 @@ impl Writer<'_> {
         let common = common.filter(|c| terms.len() > 1 && !c.is_empty());
         let Some(common) = common else {
             let parts = terms.iter().map(|(coefficient, what)| match what.as_str() {
-                "" => self.printer(self.fields()).print(*coefficient),
+                "" => self.printer().print(*coefficient),
                 what => self.scaled(*coefficient, what),
             });
             return signed_sum(parts.collect());
@@ -71,7 +71,7 @@ impl Writer<'_> {
             match (factors.as_slice(), what.as_str()) {
                 // A sum that nothing multiplies needs no bracket in a sum.
                 ([(sum, e)], "") if e.is_one() && number.is_one() => {
-                    self.printer(self.fields()).print(*sum)
+                    self.printer().print(*sum)
                 }
                 _ => self.product(&number, &factors, what),
             }
@@ -115,7 +115,7 @@ impl Writer<'_> {
             Some((number, rest)) if whole(number) => (number, rest),
             _ => ("1", rest),
         };
-        let below = self.printer(self.fields()).print(divisor);
+        let below = self.printer().print(divisor);
         format!("{sign}{} {rest}", self.notation.fraction(number, &[below]))
     }
 
@@ -272,7 +272,7 @@ impl Writer<'_> {
 
     /// number · Π factors · what.
     fn product(&self, number: &Rational, factors: &[(Id, Rational)], what: &str) -> String {
-        let printer = self.printer(self.fields());
+        let printer = self.printer();
         let mut text = match (factors.is_empty(), number.abs().is_one()) {
             (true, true) => String::new(),
             (true, false) => self.notation.number(&number.abs()),
@@ -296,7 +296,7 @@ impl Writer<'_> {
     /// Π jets, equal ones as a power.
     fn jets(&self, monomial: &[Jet]) -> String {
         let runs = monomial.chunk_by(|a, b| a == b).map(|run| {
-            let jet = self.printer(self.fields()).jet(run[0], "'");
+            let jet = self.printer().jet(run[0], "'");
             match run.len() {
                 1 => jet,
                 times => {
@@ -347,9 +347,9 @@ fn gather<K: PartialEq, V>(pairs: impl Iterator<Item = (K, V)>) -> Vec<(K, Vec<V
 /// derivative first: what the Taylor series of the law brought with it.
 fn take_own(atom: &LawAtom, jets: &mut Monomial) -> Monomial {
     let mut own = Monomial::new();
-    for (field, &order) in atom.index.iter().enumerate() {
+    for (field, &order) in atom.index.pairs() {
         for _ in 0..order {
-            let of_field = |j: &&Jet| usize::from(j.field) == field;
+            let of_field = |j: &&Jet| j.of == field;
             let lowest = jets
                 .iter()
                 .filter(of_field)

@@ -35,12 +35,10 @@ literals! {
     FieldInfo { name, doc, lower, upper, uniform }
     ParameterInfo { name, doc, default, lower, upper, choices, automatic }
     BaseInfo { solved, closed, rows, offsets, integrals, automatic }
-    OffsetsInfo { rows, columns }
     BaseJet { field, order }
     BaseRowInfo { balance, jets }
     AutomaticInfo { parameter, end }
     ParityInfo { fields, rows }
-    TermInfo { row, jet }
     CaseInfo { choices, base_conditions, base_checks, conditions, adjoint, closures }
     BaseConditionInfo { end, jets }
     ConditionInfo { end, monomials }
@@ -48,6 +46,43 @@ literals! {
     ClosureInfo { kind, field, density, column }
     AmplitudeInfo { weighted, field, description }
     OutputInfo { name, doc, at_point, monomials }
+}
+
+impl<Row: Literal, Column: Literal> Literal for OffsetsInfo<Row, Column> {
+    fn literal(&self) -> TokenStream {
+        let OffsetsInfo { rows, columns } = self;
+        let (rows, columns) = (rows.literal(), columns.literal());
+        quote!(s::OffsetsInfo { rows: #rows, columns: #columns })
+    }
+}
+
+impl<Row: Literal, Column: Literal> Literal for TermInfo<Row, Column> {
+    fn literal(&self) -> TokenStream {
+        let TermInfo { row, jet } = self;
+        let (row, jet) = (row.literal(), jet.literal());
+        quote!(s::TermInfo { row: #row, jet: #jet })
+    }
+}
+
+macro_rules! id_literals {
+    ($($name:ident)*) => {$(
+        impl Literal for $name {
+            fn literal(&self) -> TokenStream {
+                let name = quote::format_ident!("{}", stringify!($name));
+                let position = self.index().literal();
+                quote!(s::#name(#position))
+            }
+        }
+    )*};
+}
+
+id_literals! { FieldId BalanceId ParameterId CaseId BaseRowId SolvedId }
+
+impl<I, T: Literal> Literal for Table<I, T> {
+    fn literal(&self) -> TokenStream {
+        let items = self.iter().map(Literal::literal);
+        quote!(s::Table::from(vec![#(#items),*]))
+    }
 }
 
 impl Literal for usize {
@@ -127,17 +162,12 @@ impl<T: Literal, E: Literal> Literal for Result<T, E> {
     }
 }
 
-impl Literal for Jet {
+impl<V: Literal> Literal for Jet<V> {
     fn literal(&self) -> TokenStream {
-        let Jet {
-            field,
-            t,
-            x,
-            absx,
-            y,
-        } = self;
-        let [field, t, x, absx, y] = [field, t, x, absx, y].map(Literal::literal);
-        quote!(s::jet(#field, #t, #x, #absx, #y))
+        let Jet { of, t, x, absx, y } = self;
+        let [t, x, absx, y] = [t, x, absx, y].map(Literal::literal);
+        let of = of.literal();
+        quote!(s::jet(#of, #t, #x, #absx, #y))
     }
 }
 

@@ -6,7 +6,7 @@ use super::literal::Literal;
 use super::text;
 use crate::derive::Derivation;
 use crate::kernel::{Kernel, ModelKernels, Operation};
-use landau_contract::{KernelId, ResidualId};
+use landau_contract::{CaseId, Id as _, KernelId, ResidualId};
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
@@ -25,13 +25,14 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
     let mut forms = TokenStream::new();
     for (index, rows) in model.forms.iter().enumerate() {
         let degree = index + 2;
-        for (row, kernel) in rows.iter().enumerate() {
+        for (row, kernel) in rows.pairs() {
             let Some(kernel) = kernel else { continue };
             let balance = &model.structure.balances[row];
             let name = format_ident!("n{}_{}", degree, identifier(balance));
             let equation = text::nonlinear_row(derivation, degree, row);
             functions.extend(form_function(&name, kernel, degree, balance, &equation));
             let arguments = (0..degree).map(proc_macro2::Literal::usize_unsuffixed);
+            let row = row.literal();
             forms.extend(quote!((#degree, #row) => #name(c, #(x[#arguments]),*),));
         }
     }
@@ -90,7 +91,7 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
                 }
             }
 
-            fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64 {
+            fn form(&self, degree: usize, row: s::BalanceId, c: &[f64], x: &[&[C64]]) -> C64 {
                 #unread
                 match (degree, row) {
                     #forms
@@ -144,14 +145,14 @@ fn kernel_name(id: KernelId) -> Ident {
         KernelId::Base => format_ident!("base_residual"),
         KernelId::BaseIntegrals => format_ident!("base_integrals"),
         KernelId::Automatic => format_ident!("automatic_conditions"),
-        KernelId::BaseConditions(case) => format_ident!("base_conditions_{case}"),
+        KernelId::BaseConditions(case) => format_ident!("base_conditions_{}", case.index()),
         KernelId::Divisors => format_ident!("divisors"),
         KernelId::Linear => format_ident!("linear_coefficients"),
         KernelId::Adjoint => format_ident!("adjoint_coefficients"),
         KernelId::Nonlinear => format_ident!("nonlinear_coefficients"),
-        KernelId::Conditions(case) => format_ident!("boundary_conditions_{case}"),
-        KernelId::AdjointConditions(case) => format_ident!("adjoint_conditions_{case}"),
-        KernelId::Closures(case) => format_ident!("closures_{case}"),
+        KernelId::Conditions(case) => format_ident!("boundary_conditions_{}", case.index()),
+        KernelId::AdjointConditions(case) => format_ident!("adjoint_conditions_{}", case.index()),
+        KernelId::Closures(case) => format_ident!("closures_{}", case.index()),
         KernelId::Amplitude => format_ident!("amplitude"),
         KernelId::Outputs => format_ident!("output_coefficients"),
     }
@@ -159,10 +160,10 @@ fn kernel_name(id: KernelId) -> Ident {
 
 fn kernel_pattern(id: KernelId) -> TokenStream {
     match id {
-        KernelId::BaseConditions(case) => quote!(BaseConditions(#case)),
-        KernelId::Conditions(case) => quote!(Conditions(#case)),
-        KernelId::AdjointConditions(case) => quote!(AdjointConditions(#case)),
-        KernelId::Closures(case) => quote!(Closures(#case)),
+        KernelId::BaseConditions(case) => case_pattern("BaseConditions", case),
+        KernelId::Conditions(case) => case_pattern("Conditions", case),
+        KernelId::AdjointConditions(case) => case_pattern("AdjointConditions", case),
+        KernelId::Closures(case) => case_pattern("Closures", case),
         plain => {
             let name = format_ident!("{}", format!("{plain:?}"));
             quote!(#name)
@@ -170,16 +171,21 @@ fn kernel_pattern(id: KernelId) -> TokenStream {
     }
 }
 
+fn case_pattern(kernel: &str, case: CaseId) -> TokenStream {
+    let (kernel, case) = (format_ident!("{kernel}"), case.literal());
+    quote!(#kernel(#case))
+}
+
 fn residual_name(id: ResidualId) -> (Ident, TokenStream) {
     match id {
         ResidualId::Balances => (format_ident!("RESIDUAL_BALANCES"), quote!(Balances)),
         ResidualId::Conditions(case) => (
-            format_ident!("RESIDUAL_CONDITIONS_{case}"),
-            quote!(Conditions(#case)),
+            format_ident!("RESIDUAL_CONDITIONS_{}", case.index()),
+            case_pattern("Conditions", case),
         ),
         ResidualId::BaseChecks(case) => (
-            format_ident!("RESIDUAL_BASE_CHECKS_{case}"),
-            quote!(BaseChecks(#case)),
+            format_ident!("RESIDUAL_BASE_CHECKS_{}", case.index()),
+            case_pattern("BaseChecks", case),
         ),
     }
 }

@@ -1,8 +1,9 @@
 //! The derived operators as lines in the notation of the literature, as text or as LaTeX.
 
 use crate::derive::{AdjointCondition, CaseClosure, Derivation, Form, Term};
-use crate::graph::{Id, Jet, Latex, Notation, Plain, Printer};
+use crate::graph::{BalanceId, FieldId, Id, Jet, Latex, Notation, Plain, Printer, Table};
 use crate::model::{End, Lettering};
+use landau_contract::Id as Position;
 use std::collections::BTreeMap;
 
 /// What `explain` can print.
@@ -104,7 +105,7 @@ fn lines(writer: &Writer, section: Section) -> Vec<Line> {
 }
 
 /// One row of N of some degree as a sum, for doc comments.
-pub fn nonlinear_row(derivation: &Derivation, degree: usize, row: usize) -> String {
+pub fn nonlinear_row(derivation: &Derivation, degree: usize, row: BalanceId) -> String {
     Writer::new(derivation, &Plain).form(&derivation.operators.nonlinear[degree - 2][row])
 }
 
@@ -113,16 +114,14 @@ pub(super) struct Writer<'a> {
     pub(super) notation: &'a dyn Notation,
     lettering: Lettering,
     /// Adjoint fields by balance.
-    adjoint_fields: Vec<String>,
+    adjoint_fields: Table<BalanceId, String>,
 }
 
 impl<'a> Writer<'a> {
     pub(super) fn new(derivation: &'a Derivation, notation: &'a dyn Notation) -> Self {
         let lettering = derivation.model.lettering();
-        let paired = derivation.operators.pairing.iter();
-        let adjoint_fields = paired
-            .map(|&field| format!("{}†", lettering.fields[field]))
-            .collect();
+        let pairing = &derivation.operators.pairing;
+        let adjoint_fields = pairing.map(|&field| format!("{}†", lettering.fields[field]));
         Writer {
             derivation,
             notation,
@@ -131,21 +130,17 @@ impl<'a> Writer<'a> {
         }
     }
 
-    pub(super) fn fields(&self) -> &[String] {
+    pub(super) fn fields(&self) -> &Table<FieldId, String> {
         &self.lettering.fields
     }
 
-    /// A printer for the model's own fields, or others by the same numbers.
-    pub(super) fn printer<'b>(&'b self, fields: &'b [String]) -> Printer<'b> {
+    pub(super) fn printer(&self) -> Printer<'_> {
         let graph = &self.derivation.model.graph;
-        Printer {
-            fields,
-            ..self.lettering.printer(graph, self.notation)
-        }
+        self.lettering.printer(graph, self.notation)
     }
 
     fn print(&self, id: Id) -> String {
-        self.printer(self.fields()).print(id)
+        self.printer().print(id)
     }
 
     fn place(&self, end: End) -> String {
@@ -162,7 +157,7 @@ impl<'a> Writer<'a> {
     }
 
     /// ∂x^a |∂x|^b ∂y^c ∂t^d
-    fn operator(&self, jet: Jet) -> String {
+    fn operator<V>(&self, jet: Jet<V>) -> String {
         let model = &self.derivation.model;
         let notation = self.notation;
         let mut parts = Vec::new();
@@ -190,24 +185,24 @@ impl<'a> Writer<'a> {
     }
 
     /// Entry by entry: the coefficient, then the operator.
-    fn entries(
+    fn entries<Row: Position, Column: Position>(
         &self,
         lines: &mut Vec<Line>,
-        terms: &[Term],
-        rows: &[String],
-        columns: &[String],
+        terms: &[Term<Row, Column>],
+        rows: &Table<Row, String>,
+        columns: &Table<Column, String>,
         time: bool,
     ) {
-        let mut blocks: BTreeMap<(usize, u8), Vec<(Id, String)>> = BTreeMap::new();
-        let mut sorted: Vec<&Term> = terms.iter().filter(|t| (t.jet.t > 0) == time).collect();
+        let mut blocks: BTreeMap<(Row, Column), Vec<(Id, String)>> = BTreeMap::new();
+        let mut sorted: Vec<&Term<Row, Column>> = terms.iter().filter(|t| (t.jet.t > 0) == time).collect();
         sorted.sort_by_key(|t| (t.jet.y, t.jet.x, t.jet.absx));
         for term in sorted {
             let operator = self.operator(Jet { t: 0, ..term.jet });
-            let block = blocks.entry((term.row, term.jet.field)).or_default();
+            let block = blocks.entry((term.row, term.jet.of)).or_default();
             block.push((term.coefficient, operator));
         }
         for ((row, column), parts) in blocks {
-            let column = self.name(&columns[usize::from(column)]);
+            let column = self.name(&columns[column]);
             let label = Label::Entry(rows[row].clone(), column);
             let formula = if self.notation.is_flat() {
                 let parts = parts
@@ -227,7 +222,7 @@ impl<'a> Writer<'a> {
     fn base(&self) -> Vec<Line> {
         let (model, operators) = (&self.derivation.model, &self.derivation.operators);
         let mut lines = vec![Line::Heading("Base state".into())];
-        for (field, closed) in model.base.closed.iter().enumerate() {
+        for (field, closed) in model.base.closed.pairs() {
             if let Some(id) = closed {
                 let name = self.notation.symbol(&self.fields()[field], "⁰", &[]);
                 let formula = format!("{name} = {}", self.print(*id));
@@ -271,7 +266,7 @@ impl<'a> Writer<'a> {
 
     fn linear(&self) -> Vec<Line> {
         let (model, operators) = (&self.derivation.model, &self.derivation.operators);
-        let rows: Vec<String> = model.balances.iter().map(|b| b.name.clone()).collect();
+        let rows = model.balances.map(|b| b.name.clone());
         let mut lines = vec![Line::Heading("Mass matrix M0 [balance, field]".into())];
         self.entries(&mut lines, &operators.linear, &rows, self.fields(), true);
         lines.push(Line::Heading("Linear operator L [balance, field]".into()));
@@ -336,7 +331,7 @@ impl<'a> Writer<'a> {
                 let signs: Vec<String> = self
                     .fields()
                     .iter()
-                    .zip(&parity.fields)
+                    .zip(parity.fields.iter())
                     .map(|(name, odd)| {
                         if *odd {
                             format!("-{name}")
@@ -379,12 +374,13 @@ impl<'a> Writer<'a> {
     }
 
     fn adjoint_condition(&self, condition: &AdjointCondition) -> String {
-        let printer = self.printer(&self.adjoint_fields);
+        let printer = self.printer();
         let mut parts = Vec::new();
         // The highest derivative first, as it is solved for.
         for (jet, symbol) in condition.combination.iter().rev() {
             for (&(x, absx), &id) in symbol {
-                let mark = printer.jet(Jet { x, absx, ..*jet }, "");
+                let jet = Jet { x, absx, ..*jet };
+                let mark = printer.named_jet(&self.adjoint_fields[jet.of], jet, "");
                 parts.push(self.scaled(id, &mark));
             }
         }
@@ -394,7 +390,7 @@ impl<'a> Writer<'a> {
     fn nonlinear(&self, degree: usize) -> Vec<Line> {
         let (model, operators) = (&self.derivation.model, &self.derivation.operators);
         let mut lines = vec![Line::Heading(format!("N{degree}"))];
-        for (row, form) in operators.nonlinear[degree - 2].iter().enumerate() {
+        for (row, form) in operators.nonlinear[degree - 2].pairs() {
             let name = Label::Name(model.balances[row].name.clone());
             let formula = if self.notation.is_flat() || form.terms.is_empty() {
                 self.form(form)
@@ -408,12 +404,12 @@ impl<'a> Writer<'a> {
     }
 
     fn jet(&self, jet: Jet) -> String {
-        self.printer(self.fields()).jet(jet, "'")
+        self.printer().jet(jet, "'")
     }
 
     /// coefficient · what, ones left out.
     pub(super) fn scaled(&self, coefficient: Id, what: &str) -> String {
-        let text = self.printer(self.fields()).factor(coefficient);
+        let text = self.printer().factor(coefficient);
         match text.as_str() {
             "1" => what.to_owned(),
             "-1" => format!("-{what}"),

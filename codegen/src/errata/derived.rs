@@ -3,13 +3,14 @@
 use super::{Formula, Subject};
 use crate::derive::{Case, Derivation, Form};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, SourceFile, nearest};
-use crate::graph::{Graph, Id, Jet, Rational};
+use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, ParameterId, Rational, Table};
+use landau_contract::Id as Position;
 use num_traits::One;
 
 type Found<T> = Result<T, Diagnostics>;
 
 /// The values of parameters, and the branches of switches, that a formula is read for.
-pub(super) type Setting = Vec<(usize, Value)>;
+pub(super) type Setting = Vec<(ParameterId, Value)>;
 
 #[derive(Clone, Debug)]
 pub(super) enum Value {
@@ -23,29 +24,21 @@ pub(super) fn subject(
     formula: &Formula,
     setting: &Setting,
 ) -> Found<Id> {
-    let named = |what: &str, name: &str, names: &[String]| {
-        let found = names.iter().position(|n| n == name);
-        found.ok_or_else(|| absent(formula, what, name, names))
-    };
     let model = &derivation.model;
-    let balances: Vec<String> = model.balances.iter().map(|b| b.name.clone()).collect();
-    let laws: Vec<String> = model.laws.iter().map(|l| l.name.clone()).collect();
+    let balances = model.balances.map(|b| b.name.clone());
+    let laws = model.laws.map(|l| l.name.clone());
     let fields = model.field_names();
-    let balance = |name: &str| named("balance", name, &balances);
-    let field = |name: &str| named("field", name, &fields);
+    let balance = |name: &str| named(formula, "balance", name, &balances);
+    let field = |name: &str| named(formula, "field", name, &fields);
     let paired = |name: &str| {
         let field = field(name)?;
-        let row = derivation
-            .operators
-            .pairing
-            .iter()
-            .position(|&f| f == field);
+        let row = derivation.operators.pairing.position(|&f| f == field);
         row.ok_or_else(|| absent(formula, "balance paired with", name, &fields))
     };
     let operators = &derivation.operators;
     let form = match &formula.subject {
         Subject::Balance(name) => return Ok(model.balances[balance(name)?].residual),
-        Subject::Law(name) => return Ok(model.laws[named("law", name, &laws)?].body),
+        Subject::Law(name) => return Ok(model.laws[named(formula, "law", name, &laws)?].body),
         Subject::Base(name) => {
             let balance = balance(name)?;
             let row = operators.base.iter().find(|row| row.balance == balance);
@@ -55,15 +48,17 @@ pub(super) fn subject(
         Subject::Linear(row, column) => {
             let (row, column) = (balance(row)?, field(column)?);
             let terms = operators.linear.iter().filter(|t| t.row == row);
-            let terms = terms.filter(|t| usize::from(t.jet.field) == column && t.jet.t == 0);
+            let terms = terms.filter(|t| t.jet.of == column && t.jet.t == 0);
             terms.map(|t| (vec![t.jet], t.coefficient)).collect()
         }
         Subject::Adjoint(row, column) => {
             let (row, column) = (field(row)?, paired(column)?);
             let terms = operators.adjoint.iter().filter(|t| t.row == row);
-            let terms = terms.filter(|t| usize::from(t.jet.field) == column && t.jet.t == 0);
-            let named = |jet: Jet| in_fields(&operators.pairing, jet);
-            terms.map(|t| (vec![named(t.jet)], t.coefficient)).collect()
+            let terms = terms.filter(|t| t.jet.of == column && t.jet.t == 0);
+            let in_fields = |jet| in_fields(&operators.pairing, jet);
+            terms
+                .map(|t| (vec![in_fields(t.jet)], t.coefficient))
+                .collect()
         }
         Subject::Nonlinear(degree, row) => {
             let row = balance(row)?;
@@ -107,12 +102,20 @@ pub(super) fn subject(
     Ok(expression(&mut derivation.model.graph, &form))
 }
 
-/// An adjoint jet counts balances; here it is named by the field that its balance goes with.
-fn in_fields(pairing: &[usize], jet: Jet) -> Jet {
-    Jet {
-        field: pairing[usize::from(jet.field)] as u8,
-        ..jet
-    }
+/// An adjoint jet is of a balance; here it is named by the field that its balance goes with.
+fn in_fields(pairing: &Table<BalanceId, FieldId>, jet: Jet<BalanceId>) -> Jet {
+    jet.about(pairing[jet.of])
+}
+
+/// Something of the model by name.
+fn named<I: Position>(
+    formula: &Formula,
+    what: &str,
+    name: &str,
+    names: &Table<I, String>,
+) -> Found<I> {
+    let found = names.position(|n| n == name);
+    found.ok_or_else(|| absent(formula, what, name, names))
 }
 
 /// Σ coefficient · Π jets.
@@ -133,7 +136,7 @@ fn expression(graph: &mut Graph, form: &Form) -> Id {
 /// The case of the switches that the formula is set in: the default choices where it says nothing.
 fn case<'d>(derivation: &'d Derivation, formula: &Formula, setting: &Setting) -> Found<&'d Case> {
     let operators = &derivation.operators;
-    let chosen = |switch: usize| {
+    let chosen = |switch: ParameterId| {
         let set = setting.iter().find_map(|(parameter, value)| match value {
             Value::Choice(choice) if *parameter == switch => Some(*choice),
             _ => None,
@@ -145,15 +148,13 @@ fn case<'d>(derivation: &'d Derivation, formula: &Formula, setting: &Setting) ->
     found.ok_or_else(|| absent(formula, "case of", "these switches", &[]))
 }
 
-/// The formula's parameters by index.
+/// The parameters that a formula is set in.
 pub(super) fn setting(derivation: &mut Derivation, formula: &Formula) -> Found<Setting> {
-    let parameters = &derivation.model.parameters;
-    let names: Vec<String> = parameters.iter().map(|p| p.name.clone()).collect();
+    let names = derivation.model.parameters.map(|p| p.name.clone());
     let mut setting = Setting::new();
     for (name, text) in &formula.setting {
-        let index = names.iter().position(|n| n == name);
-        let index = index.ok_or_else(|| absent(formula, "parameter", name, &names))?;
-        let choices = derivation.model.parameters[index].choices.clone();
+        let parameter = named(formula, "parameter", name, &names)?;
+        let choices = derivation.model.parameters[parameter].choices.clone();
         let value = match choices.iter().position(|choice| choice == text) {
             Some(choice) => Value::Choice(choice),
             None => {
@@ -162,7 +163,7 @@ pub(super) fn setting(derivation: &mut Derivation, formula: &Formula) -> Found<S
                 Value::Number(number.ok_or_else(|| absent(formula, &what, text, &choices))?)
             }
         };
-        setting.push((index, value));
+        setting.push((parameter, value));
     }
     Ok(setting)
 }

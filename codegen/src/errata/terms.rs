@@ -1,8 +1,8 @@
 //! Rewriting both sides of a comparison into the same terms.
 
 use super::derived::{Setting, Value};
-use crate::derive::{self, Derivation, Opener, base_value};
-use crate::graph::{Graph, Id, LawAtom, Node, Variable};
+use crate::derive::{self, Dependence, Derivation, Opener, base_value};
+use crate::graph::{FieldId, Graph, Id, LawAtom, LawId, Node, ParameterId, Table, Variable};
 use crate::model::Law;
 use std::collections::HashMap;
 
@@ -21,7 +21,7 @@ pub(super) fn settle(graph: &mut Graph, id: Id, setting: &Setting) -> Id {
     })
 }
 
-fn value(setting: &Setting, parameter: usize) -> Option<&Value> {
+fn value(setting: &Setting, parameter: ParameterId) -> Option<&Value> {
     let found = setting.iter().find(|(index, _)| *index == parameter);
     found.map(|(_, value)| value)
 }
@@ -29,7 +29,7 @@ fn value(setting: &Setting, parameter: usize) -> Option<&Value> {
 /// The formula of a law, opened down to fields and parameters.
 pub(super) fn open_law(derivation: &mut Derivation, id: Id) -> Id {
     let model = &mut derivation.model;
-    let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
+    let uniform = model.fields.map(|f| f.uniform);
     Opener::new(&model.laws, &model.base.closed, &uniform).at_state(&mut model.graph, id)
 }
 
@@ -38,7 +38,7 @@ pub(super) fn open_law(derivation: &mut Derivation, id: Id) -> Id {
 pub(super) fn carry_out(derivation: &mut Derivation, id: Id) -> Id {
     let model = &mut derivation.model;
     let (laws, closed) = (&model.laws, &model.base.closed);
-    let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
+    let uniform = model.fields.map(|f| f.uniform);
     let graph = &mut model.graph;
     let id = derive::carry_out(graph, id, &uniform);
     let depends = derive::dependence(graph, laws, uniform.len());
@@ -54,14 +54,14 @@ pub(super) fn carry_out(derivation: &mut Derivation, id: Id) -> Id {
 }
 
 /// Whether a law is differentiated by a field that it does not depend on.
-fn foreign(atom: &LawAtom, depends: &[Vec<bool>]) -> bool {
-    let mut index = atom.index.iter().zip(&depends[atom.law]);
+fn foreign(atom: &LawAtom, depends: &Dependence) -> bool {
+    let mut index = atom.index.iter().zip(depends[atom.law].iter());
     index.any(|(&order, depends)| order > 0 && !depends)
 }
 
 /// Laws that depend on the coordinate other than through the fields.
-fn explicit(graph: &Graph, laws: &[Law]) -> Vec<bool> {
-    let mut table: Vec<bool> = Vec::with_capacity(laws.len());
+fn explicit(graph: &Graph, laws: &Table<LawId, Law>) -> Table<LawId, bool> {
+    let mut table: Table<LawId, bool> = Table::default();
     for law in laws {
         let depends = graph.any(law.body, |node| match node {
             Node::Coordinate => true,
@@ -103,7 +103,7 @@ pub(super) fn open_chain(derivation: &mut Derivation, id: Id) -> Id {
 }
 
 /// d/dy of an expression in laws and base fields.
-fn along(graph: &mut Graph, id: Id, depends: &[Vec<bool>], closed: &[Option<Id>]) -> Id {
+fn along(graph: &mut Graph, id: Id, depends: &Dependence, closed: &Table<FieldId, Option<Id>>) -> Id {
     let slope = graph.differentiate(id, Variable::AlongBase);
     graph.substitute(slope, &mut |graph, node| match node {
         Node::BaseLaw(atom) if atom.y == 1 => {
@@ -112,7 +112,7 @@ fn along(graph: &mut Graph, id: Id, depends: &[Vec<bool>], closed: &[Option<Id>]
                 ..atom.clone()
             };
             let mut parts = Vec::new();
-            for field in (0..atom.index.len()).filter(|&f| depends[atom.law][f]) {
+            for field in atom.index.ids().filter(|&f| depends[atom.law][f]) {
                 let partial = graph.base_law(law.partial(field));
                 let gradient = base_value(graph, closed, field, 1);
                 let part = graph.mul(partial, gradient);

@@ -1,6 +1,6 @@
 //! Constructors: each returns the canonical node of what it is asked for.
 
-use super::{Function, Graph, Id, Jet, LawAtom, Node, Operator, Rational};
+use super::{FieldId, Function, Graph, Id, Jet, LawAtom, Node, Operator, ParameterId, Rational};
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use std::collections::BTreeMap;
 
@@ -35,9 +35,9 @@ impl Graph {
         self.intern(Node::Pi)
     }
 
-    /// A parameter by position.
-    pub fn parameter(&mut self, index: usize) -> Id {
-        self.intern(Node::Parameter(index))
+    /// A parameter.
+    pub fn parameter(&mut self, parameter: ParameterId) -> Id {
+        self.intern(Node::Parameter(parameter))
     }
 
     /// k
@@ -56,7 +56,7 @@ impl Graph {
     }
 
     /// ∂y^order of a base field.
-    pub fn base(&mut self, field: usize, order: u8) -> Id {
+    pub fn base(&mut self, field: FieldId, order: u8) -> Id {
         self.intern(Node::Base(field, order))
     }
 
@@ -338,7 +338,7 @@ impl Graph {
     }
 
     /// One branch a choice; a choice between equals is no choice.
-    pub fn select(&mut self, switch: usize, branches: Vec<Id>) -> Id {
+    pub fn select(&mut self, switch: ParameterId, branches: Vec<Id>) -> Id {
         match branches.first() {
             Some(&first) if branches.iter().all(|&b| b == first) => first,
             _ => self.intern(Node::Select(switch, branches)),

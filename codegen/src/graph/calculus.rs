@@ -1,6 +1,6 @@
 //! Differentiation and substitution.
 
-use super::{Function, Graph, Id, Jet, Node, Rational};
+use super::{FieldId, Function, Graph, Id, Jet, Node, Rational};
 use num_traits::One;
 use std::collections::HashMap;
 
@@ -8,11 +8,11 @@ use std::collections::HashMap;
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Variable {
     /// The value of a field in the full state (laws follow by their partial derivatives).
-    Field(usize),
+    Field(FieldId),
     /// Explicit dependence on the coordinate.
     Coordinate,
     /// A derivative of a solved base field; laws must have been opened.
-    Base(usize, u8),
+    Base(FieldId, u8),
     /// d/dy along the base state.
     AlongBase,
     /// ∂x, ∂y, ∂t of the full state by the chain rule.
@@ -83,7 +83,7 @@ impl Graph {
             // ∂q law = Σ_f law_f ∂q f (+ explicit y)
             (Node::StateLaw(atom), Variable::State(operator)) => {
                 let mut parts = Vec::new();
-                for field in 0..atom.index.len() {
+                for field in atom.index.ids() {
                     let partial = self.state_law(atom.partial(field));
                     let jet = self.jet(Jet::value(field).derived(operator));
                     parts.push((self.mul(partial, jet), Rational::one()));

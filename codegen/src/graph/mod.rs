@@ -7,13 +7,18 @@
 
 mod algebra;
 mod calculus;
+mod linear;
 mod node;
 mod notation;
 mod print;
 mod zero;
 
 pub use calculus::Variable;
-pub use node::{Function, Jet, LawAtom, Node, Operator, Rational};
+pub use linear::LinearSystem;
+pub use node::{
+    BalanceId, CaseId, FieldId, Function, Jet, LawAtom, LawId, Node, Operator, ParameterId, Rational,
+    Table,
+};
 pub use notation::{Latex, Notation, Plain};
 pub use print::Printer;
 

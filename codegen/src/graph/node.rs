@@ -1,24 +1,26 @@
 //! What an expression can be.
 
 use super::Id;
-pub use landau_contract::{Function, Jet, Operator};
+pub use landau_contract::{
+    BalanceId, CaseId, FieldId, Function, Jet, LawId, Operator, ParameterId, Table,
+};
 pub use num_rational::BigRational as Rational;
 
 /// A constitutive law kept opaque, with derivative indices: p⁰_nny is
 /// `LawAtom { law: p, index: [2, 0, …], y: 1 }`.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct LawAtom {
-    /// Which law, by position.
-    pub law: usize,
+    /// Which law.
+    pub law: LawId,
     /// Partial derivatives with respect to each field.
-    pub index: Vec<u8>,
+    pub index: Table<FieldId, u8>,
     /// At the base state: total y-derivatives. In the full state: explicit partial y-derivatives.
     pub y: u8,
 }
 
 impl LawAtom {
     /// The atom with one more derivative with respect to `field`.
-    pub fn partial(&self, field: usize) -> Self {
+    pub fn partial(&self, field: FieldId) -> Self {
         let mut atom = self.clone();
         atom.index[field] += 1;
         atom
@@ -40,8 +42,8 @@ pub enum Node {
     Number(Rational),
     /// π
     Pi,
-    /// A parameter by position.
-    Parameter(usize),
+    /// A parameter.
+    Parameter(ParameterId),
     /// The wavenumber of the fundamental (in the amplitude alone).
     Wavenumber,
     /// The cross-stream coordinate y.
@@ -49,7 +51,7 @@ pub enum Node {
     /// A derivative of a field of the full state.
     Jet(Jet),
     /// ∂y^order of a solved base field.
-    Base(usize, u8),
+    Base(FieldId, u8),
     /// A law and its derivatives at the full state.
     StateLaw(LawAtom),
     /// A law and its derivatives at the base state.
@@ -61,7 +63,7 @@ pub enum Node {
     /// A function of one argument.
     Call(Function, Id),
     /// One branch a choice of the switch parameter.
-    Select(usize, Vec<Id>),
+    Select(ParameterId, Vec<Id>),
     /// A differential operator not yet carried out.
     Derivative(Operator, Id),
     /// Input `position` of array `array` of a kernel.

@@ -1,18 +1,20 @@
 //! Expressions in the notation of the literature: n⁰_y, p⁰_nT, μ.
 
-use super::{Graph, Id, Jet, LawAtom, Node, Notation, Rational};
+use super::{
+    FieldId, Graph, Id, Jet, LawAtom, LawId, Node, Notation, ParameterId, Rational, Table,
+};
 use num_traits::{One, Signed};
 
 /// Names for the atoms of a graph.
 pub struct Printer<'a> {
     /// Every expression of the model.
     pub graph: &'a Graph,
-    /// In the order of their declaration.
-    pub fields: &'a [String],
-    /// In the order of their declaration.
-    pub parameters: &'a [String],
-    /// In the order of their declaration.
-    pub laws: &'a [String],
+    /// Names of the fields.
+    pub fields: &'a Table<FieldId, String>,
+    /// Names of the parameters.
+    pub parameters: &'a Table<ParameterId, String>,
+    /// Names of the laws.
+    pub laws: &'a Table<LawId, String>,
     /// Name of the periodic coordinate.
     pub periodic: &'a str,
     /// Name of the cross-stream coordinate.
@@ -108,10 +110,14 @@ impl Printer<'_> {
 
     /// A derivative of a field: `∂xy u'`, with `mark` after the name.
     pub fn jet(&self, jet: Jet, mark: &str) -> String {
+        self.named_jet(&self.fields[jet.of], jet, mark)
+    }
+
+    /// The same derivative of whatever has a name.
+    pub fn named_jet<V>(&self, name: &str, jet: Jet<V>, mark: &str) -> String {
         let mut below = vec!["t"; usize::from(jet.t)];
         below.extend(vec![self.periodic; usize::from(jet.x)]);
         below.extend(vec![self.coordinate; usize::from(jet.y)]);
-        let name = &self.fields[usize::from(jet.field)];
         let symbol = self.notation.symbol(name, mark, &below);
         match jet.absx {
             0 => symbol,
@@ -124,7 +130,7 @@ impl Printer<'_> {
 
     fn law(&self, atom: &LawAtom, mark: &str) -> String {
         let mut marks: Vec<&str> = Vec::new();
-        for (field, &order) in atom.index.iter().enumerate() {
+        for (field, &order) in atom.index.pairs() {
             marks.extend(vec![self.fields[field].as_str(); usize::from(order)]);
         }
         marks.extend(vec![self.coordinate; usize::from(atom.y)]);

@@ -124,12 +124,12 @@ fn rational(value: &Rational) -> Option<u64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::graph::{Graph, Rational};
+    use crate::graph::{Graph, ParameterId, Rational};
 
     #[test]
     fn what_vanishes_and_what_does_not() {
         let mut graph = Graph::new();
-        let (a, b) = (graph.parameter(0), graph.parameter(1));
+        let (a, b) = (graph.parameter(ParameterId(0)), graph.parameter(ParameterId(1)));
         let two = Rational::from_integer(2.into());
         // (a + b)² − a² − 2ab − b²
         let sum = graph.add(a, b);

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 pub fn kernels(derivation: &mut Derivation) -> ModelKernels {
     let Derivation { model, operators } = derivation;
     let mut graph = std::mem::take(&mut model.graph);
-    let uniform: Vec<bool> = model.fields.iter().map(|f| f.uniform).collect();
+    let uniform = model.fields.map(|f| f.uniform);
     let opener = Opener::new(&model.laws, &model.base.closed, &uniform);
     let mut assembler = Assembler {
         graph: &mut graph,
@@ -28,7 +28,9 @@ pub fn kernels(derivation: &mut Derivation) -> ModelKernels {
     result
 }
 
-fn offsets(offsets: &crate::derive::Offsets) -> OffsetsInfo {
+fn offsets<Row: Clone, Column: Clone>(
+    offsets: &crate::derive::Offsets<Row, Column>,
+) -> OffsetsInfo<Row, Column> {
     OffsetsInfo {
         rows: offsets.rows.clone(),
         columns: offsets.columns.clone(),
@@ -74,12 +76,12 @@ impl Assembler<'_> {
                 atoms.insert((*field, *order));
             }
         }
-        let slope = |&(field, order): &(usize, u8)| {
+        let slope = |&(field, order): &(FieldId, u8)| {
             self.graph
                 .differentiate(value, Variable::Base(field, order))
         };
         let slopes = atoms.iter().map(slope).collect();
-        let jet = |(field, order): (usize, u8)| BaseJet {
+        let jet = |(field, order): (FieldId, u8)| BaseJet {
             field,
             order: usize::from(order),
         };
@@ -111,7 +113,7 @@ impl Assembler<'_> {
                 jet: t.jet,
             })
             .collect();
-        self.opened(KernelId::Divisors, operators.divisors.clone());
+        self.opened(KernelId::Divisors, operators.divisors.to_vec());
         self.opened(
             KernelId::Linear,
             operators.linear.iter().map(|t| t.coefficient).collect(),
@@ -121,12 +123,10 @@ impl Assembler<'_> {
             operators.adjoint.iter().map(|t| t.coefficient).collect(),
         );
         let (form_jets, coefficients) = self.nonlinear();
-        let cases = (0..operators.cases.len())
-            .map(|case| self.case(case))
-            .collect();
+        let cases = operators.cases.ids().map(|case| self.case(case)).collect();
         let amplitude = self.amplitude();
         let outputs = self.outputs();
-        let automatic = |index: usize| model.base.automatic.iter().any(|(p, _)| *p == index);
+        let automatic = |id: ParameterId| model.base.automatic.iter().any(|(p, _)| *p == id);
         Structure {
             name: model.name.clone(),
             title: model.title.clone(),
@@ -146,19 +146,18 @@ impl Assembler<'_> {
                 .collect(),
             parameters: model
                 .parameters
-                .iter()
-                .enumerate()
-                .map(|(index, p)| ParameterInfo {
+                .pairs()
+                .map(|(id, p)| ParameterInfo {
                     name: p.name.clone(),
                     doc: p.doc.clone(),
                     default: p.default,
                     lower: p.lower,
                     upper: p.upper,
                     choices: p.choices.clone(),
-                    automatic: automatic(index),
+                    automatic: automatic(id),
                 })
                 .collect(),
-            balances: model.balances.iter().map(|b| b.name.clone()).collect(),
+            balances: model.balances.map(|b| b.name.clone()),
             base_order: self.base_order,
             base,
             offsets: offsets(&operators.offsets),
@@ -174,7 +173,7 @@ impl Assembler<'_> {
             forms: operators
                 .nonlinear
                 .iter()
-                .map(|rows| rows.iter().map(|form| !form.terms.is_empty()).collect())
+                .map(|rows| rows.map(|form| !form.terms.is_empty()))
                 .collect(),
             residual_jets: Vec::new(),
             switches: operators.switches.clone(),
@@ -192,7 +191,7 @@ impl Assembler<'_> {
     fn base(&mut self) -> BaseInfo {
         let (model, operators) = (self.model, self.operators);
         let mut outputs = Vec::new();
-        let mut rows = Vec::new();
+        let mut rows = Table::default();
         for row in &operators.base {
             let (jets, linearised) = self.with_jacobian(row.residual);
             let balance = row.balance;
@@ -220,7 +219,7 @@ impl Assembler<'_> {
             let state = self.opener.at_state(self.graph, condition.residual);
             let value = self.graph.substitute(state, &mut |graph, node| match node {
                 Node::Jet(jet) if jet.is_base() => {
-                    Some(base_value(graph, closed, usize::from(jet.field), jet.y))
+                    Some(base_value(graph, closed, jet.of, jet.y))
                 }
                 Node::Jet(_) => Some(graph.zero()),
                 _ => None,
@@ -234,7 +233,7 @@ impl Assembler<'_> {
         self.kernel(KernelId::Automatic, conditions);
         BaseInfo {
             solved: operators.solved.clone(),
-            closed: model.base.closed.iter().map(Option::is_some).collect(),
+            closed: model.base.closed.map(Option::is_some),
             rows,
             offsets: offsets(&operators.base_offsets),
             integrals,
@@ -250,8 +249,8 @@ impl Assembler<'_> {
         (jets, count)
     }
 
-    fn case(&mut self, index: usize) -> CaseInfo {
-        let case = &self.operators.cases[index];
+    fn case(&mut self, id: CaseId) -> CaseInfo {
+        let case = &self.operators.cases[id];
         let mut outputs = Vec::new();
         let mut base_conditions = Vec::new();
         for condition in &case.base_conditions {
@@ -263,7 +262,7 @@ impl Assembler<'_> {
             outputs.push(linearised);
         }
         let outputs = layout::write_linearised(outputs);
-        self.kernel(KernelId::BaseConditions(index), outputs);
+        self.kernel(KernelId::BaseConditions(id), outputs);
 
         let mut coefficients = Vec::new();
         let mut conditions = Vec::new();
@@ -276,7 +275,7 @@ impl Assembler<'_> {
             });
         }
         let coefficients = layout::write_conditions(coefficients);
-        self.opened(KernelId::Conditions(index), coefficients);
+        self.opened(KernelId::Conditions(id), coefficients);
 
         let mut coefficients = Vec::new();
         let adjoint = case.adjoint.clone().map(|list| {
@@ -298,13 +297,13 @@ impl Assembler<'_> {
             infos
         });
         let coefficients = layout::write_conditions(coefficients);
-        self.opened(KernelId::AdjointConditions(index), coefficients);
+        self.opened(KernelId::AdjointConditions(id), coefficients);
 
         let mut coefficients = Vec::new();
         let mut closures = Vec::new();
         for closure in &case.closures {
             let one = self.graph.one();
-            let mean = |field: usize| vec![(Jet::value(field), one)];
+            let mean = |field: FieldId| vec![(Jet::value(field), one)];
             let (kind, field, density, column) = match closure.clone() {
                 CaseClosure::Conserved { density, column } => {
                     (ClosureKind::Conserved, None, density, column)
@@ -334,7 +333,7 @@ impl Assembler<'_> {
             });
         }
         let coefficients = layout::write_closures(coefficients);
-        self.opened(KernelId::Closures(index), coefficients);
+        self.opened(KernelId::Closures(id), coefficients);
         CaseInfo {
             choices: case.choices.clone(),
             base_conditions,

@@ -1,16 +1,16 @@
 //! Homogeneous forms → symmetric multilinear forms.
 
 use crate::derive::{Form, Monomial};
-use crate::graph::{Graph, Id, Jet, Node, Rational};
+use crate::graph::{BalanceId, Graph, Id, Jet, Node, Rational, Table};
 use num_traits::One;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The distinct jets and coefficients of all nonlinear forms, in order of appearance.
-pub(super) fn form_tables(forms: &[Vec<Form>]) -> (Vec<Jet>, Vec<Id>) {
+pub(super) fn form_tables(forms: &[Table<BalanceId, Form>]) -> (Vec<Jet>, Vec<Id>) {
     let mut jets = BTreeSet::new();
     let mut coefficients = Vec::new();
     let mut known = std::collections::HashSet::new();
-    for form in forms.iter().flatten() {
+    for form in forms.iter().flat_map(|rows| rows.iter()) {
         for (monomial, &coefficient) in &form.terms {
             jets.extend(monomial.iter().copied());
             if known.insert(coefficient) {

@@ -13,7 +13,7 @@ impl Assembler<'_> {
         // Closed forms are asked for to the same order as solved fields.
         let zero = self.graph.zero();
         let mut closed = Vec::new();
-        for field in 0..structure.fields.len() {
+        for field in structure.fields.ids() {
             for order in 0..=self.base_order {
                 closed.push(match self.model.base.closed[field] {
                     Some(_) => base_value(self.graph, &self.model.base.closed, field, order as u8),
@@ -26,7 +26,7 @@ impl Assembler<'_> {
         let residual_outputs = self.residuals();
         structure.residual_jets = residual_jets(self.graph, &residual_outputs);
         let residual_jets = structure.residual_jets.clone();
-        let forms = self.forms(&structure);
+        let forms = self.forms();
         let graph = &*self.graph;
         let state = structure.state();
         let locate = |node: &Node| match node {
@@ -36,12 +36,6 @@ impl Assembler<'_> {
             Node::Base(field, order) => Some((0, state.base(*field, usize::from(*order)))),
             _ => None,
         };
-        let point = || {
-            vec![Array {
-                name: "p",
-                real: true,
-            }]
-        };
         let kernels: Vec<(KernelId, Kernel)> = self
             .expressions
             .iter()
@@ -49,7 +43,7 @@ impl Assembler<'_> {
                 (
                     *id,
                     Lowering {
-                        inputs: point(),
+                        inputs: RESIDUAL_INPUTS[..1].to_vec(),
                         locate: &locate,
                     }
                     .lower(graph, outputs),
@@ -63,25 +57,13 @@ impl Assembler<'_> {
             Node::Jet(jet) => residual_jets.iter().position(|j| j == jet).map(|p| (1, p)),
             _ => None,
         };
-        let arrays = || {
-            vec![
-                Array {
-                    name: "p",
-                    real: true,
-                },
-                Array {
-                    name: "x",
-                    real: false,
-                },
-            ]
-        };
         let residuals = residual_outputs
             .iter()
             .map(|(id, outputs)| {
                 (
                     *id,
                     Lowering {
-                        inputs: arrays(),
+                        inputs: RESIDUAL_INPUTS.to_vec(),
                         locate: &locate,
                     }
                     .lower(graph, outputs),
@@ -116,22 +98,22 @@ impl Assembler<'_> {
             .map(|id| self.opener.at_state(self.graph, id))
             .collect();
         residuals.push((ResidualId::Balances, opened));
-        for (index, case) in self.operators.cases.iter().enumerate() {
+        for (id, case) in self.operators.cases.pairs() {
             let mut opened = Vec::new();
             for condition in &case.conditions {
                 opened.push(self.opener.at_state(self.graph, condition.residual));
             }
-            residuals.push((ResidualId::Conditions(index), opened));
+            residuals.push((ResidualId::Conditions(id), opened));
             let mut opened = Vec::new();
             for (_, residual) in &case.base_checks {
                 opened.push(self.opener.at_state(self.graph, *residual));
             }
-            residuals.push((ResidualId::BaseChecks(index), opened));
+            residuals.push((ResidualId::BaseChecks(id), opened));
         }
         residuals
     }
 
-    fn forms(&mut self, structure: &Structure) -> Vec<Vec<Option<Kernel>>> {
+    fn forms(&mut self) -> Vec<Table<BalanceId, Option<Kernel>>> {
         let (jets, coefficients) = form_tables(&self.operators.nonlinear);
         let position: HashMap<Id, usize> = coefficients
             .iter()
@@ -142,8 +124,8 @@ impl Assembler<'_> {
         let mut kernels = Vec::new();
         for (index, rows) in self.operators.nonlinear.iter().enumerate() {
             let degree = index + 2;
-            let mut line = Vec::new();
-            for form in rows.iter().take(structure.balances.len()) {
+            let mut line = Table::default();
+            for form in rows {
                 if form.terms.is_empty() {
                     line.push(None);
                     continue;

@@ -6,20 +6,20 @@ use super::scope::{Names, Resolved, is_two};
 use super::statement::field_index;
 use super::{Amplitude, Field, Weight};
 use crate::diagnostic::Diagnostic;
-use crate::graph::Id;
+use crate::graph::{FieldId, Id, Table};
 use crate::syntax::tree::*;
 
 /// The amplitude block; without one, ∫ Σ |q|² dy = 1.
 pub(super) fn amplitude(
     item: Option<&AmplitudeItem>,
-    fields: &[Field],
+    fields: &Table<FieldId, Field>,
     names: &mut Names,
 ) -> Resolved<Amplitude> {
     match item {
         // Without a word of the user: ∫ Σ |q|² dy = 1.
         None => {
             let one = names.graph.one();
-            let profiles = (0..fields.len()).filter(|&f| !fields[f].uniform);
+            let profiles = fields.ids().filter(|&f| !fields[f].uniform);
             let weighted = profiles.map(|field| Weight {
                 field,
                 weight: one,
@@ -124,7 +124,7 @@ fn contains_modulus(expression: &Expression) -> bool {
     }
 }
 
-fn modulus_of(expression: &Expression, names: &mut Names) -> Resolved<usize> {
+fn modulus_of(expression: &Expression, names: &mut Names) -> Resolved<FieldId> {
     match &expression.kind {
         ExpressionKind::Modulus(inner) => modulus_of(inner, names),
         ExpressionKind::Name(text) => {

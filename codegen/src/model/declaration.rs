@@ -117,8 +117,8 @@ pub(super) fn fields(
     tree: &ModelTree,
     names: &mut Names,
     mistakes: &mut Vec<Diagnostic>,
-) -> Vec<Field> {
-    let mut fields = Vec::new();
+) -> Table<FieldId, Field> {
+    let mut fields = Table::default();
     let unknowns = tree.mean.iter().filter_map(|item| match item {
         MeanItem::Unknown(name, _) => Some((name, true, None, String::new())),
         _ => None,
@@ -146,9 +146,8 @@ pub(super) fn fields(
                 upper = keep(names.constant(to), mistakes).unwrap_or(upper);
             }
         }
-        names.fields.insert(name.text.clone(), fields.len());
         let location = name.location.clone();
-        fields.push(Field {
+        let field = fields.push(Field {
             name: name.text.clone(),
             doc,
             lower,
@@ -156,6 +155,7 @@ pub(super) fn fields(
             uniform,
             location,
         });
+        names.fields.insert(name.text.clone(), field);
     }
     names.field_count = fields.len();
     if fields.is_empty() || fields.len() > MOST_FIELDS {

@@ -8,7 +8,7 @@ use super::Model;
 use super::context::Context;
 use super::scope::View;
 use crate::diagnostic::{Diagnostics, SourceFile};
-use crate::graph::{Graph, Id, LawAtom, Node};
+use crate::graph::{FieldId, Graph, Id, LawAtom, Node, Table};
 use crate::syntax::parse_formula;
 use crate::syntax::tree::{Expression, ExpressionKind};
 
@@ -82,8 +82,8 @@ impl Model {
                 None if below.is_empty() => "",
                 _ => continue,
             };
-            let field = self.fields.iter().position(|f| f.name == stem);
-            let law = self.laws.iter().position(|l| l.name == stem);
+            let field = self.fields.position(|f| f.name == stem);
+            let law = self.laws.position(|l| l.name == stem);
             if field.is_none() && law.is_none() {
                 continue;
             }
@@ -102,11 +102,11 @@ impl Model {
     }
 
     /// Derivatives by each field, and along the coordinate, that subscripts such as `nTy` ask for.
-    fn subscripts(&self, marks: &str) -> Option<(Vec<u8>, u8)> {
-        let (mut index, mut y) = (vec![0; self.fields.len()], 0);
+    fn subscripts(&self, marks: &str) -> Option<(Table<FieldId, u8>, u8)> {
+        let (mut index, mut y) = (self.fields.map(|_| 0), 0);
         let mut rest = marks;
         while !rest.is_empty() {
-            let fields = self.fields.iter().enumerate();
+            let fields = self.fields.pairs();
             let longest = fields
                 .filter(|(_, f)| rest.starts_with(f.name.as_str()))
                 .max_by_key(|(_, f)| f.name.len());

@@ -6,6 +6,7 @@ use super::mistake::twice;
 use super::scope::{Names, Resolved, Scope};
 use crate::Sources;
 use crate::diagnostic::{Diagnostic, nearest};
+use crate::graph::{Jet, LawId, Table};
 use crate::syntax::parse_laws;
 use crate::syntax::tree::*;
 use std::collections::BTreeMap;
@@ -126,26 +127,19 @@ pub(super) fn bind_imports(
     imported: &[Imported],
     names: &mut Names,
     mistakes: &mut Vec<Diagnostic>,
-) -> Vec<Law> {
-    let mut laws = Vec::new();
+) -> Table<LawId, Law> {
+    let mut laws = Table::default();
     for item in imported {
-        match bind(item, names) {
-            Ok(law) => {
-                names.laws.insert(item.alias.text.clone(), laws.len());
-                laws.push(law);
+        let law = bind(item, names).unwrap_or_else(|mistake| {
+            mistakes.push(mistake);
+            // Kept by name, so that its uses are not reported too.
+            Law {
+                name: item.alias.text.clone(),
+                doc: String::new(),
+                body: names.graph.zero(),
             }
-            Err(mistake) => {
-                mistakes.push(mistake);
-                // Keep the name known, so that its uses are not reported too.
-                names.laws.insert(item.alias.text.clone(), laws.len());
-                let body = names.graph.zero();
-                laws.push(Law {
-                    name: item.alias.text.clone(),
-                    doc: String::new(),
-                    body,
-                });
-            }
-        }
+        });
+        names.laws.insert(item.alias.text.clone(), laws.push(law));
     }
     laws
 }
@@ -197,7 +191,7 @@ fn bind(item: &Imported, names: &mut Names) -> Resolved<Law> {
                 ),
             );
         };
-        values.push(names.graph.jet(crate::graph::Jet::value(field)));
+        values.push(names.graph.jet(Jet::value(field)));
     }
     let place = item.alias.location.clone();
     let body = names.expand(item.scope, &definition, &values, &place, Context::Law)?;

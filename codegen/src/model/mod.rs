@@ -13,6 +13,7 @@ mod statement;
 mod switch;
 
 pub use landau_contract::End;
+use landau_contract::{BalanceId, FieldId, LawId, ParameterId, Table};
 pub use resolve::resolve;
 
 use crate::diagnostic::Location;
@@ -31,13 +32,13 @@ pub struct Model {
     /// The cross-stream coordinate, where there is one.
     pub interval: Option<Interval>,
     /// In the order of their declaration.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Table<ParameterId, Parameter>,
     /// In the order of their declaration.
-    pub fields: Vec<Field>,
+    pub fields: Table<FieldId, Field>,
     /// In the order of their declaration.
-    pub laws: Vec<Law>,
+    pub laws: Table<LawId, Law>,
     /// In the order of their declaration.
-    pub balances: Vec<Balance>,
+    pub balances: Table<BalanceId, Balance>,
     /// The base state.
     pub base: Base,
     /// Boundary conditions of all cases.
@@ -58,16 +59,21 @@ pub struct Model {
 
 impl Model {
     /// Names of the fields.
-    pub fn field_names(&self) -> Vec<String> {
-        self.fields.iter().map(|f| f.name.clone()).collect()
+    pub fn field_names(&self) -> Table<FieldId, String> {
+        self.fields.map(|f| f.name.clone())
+    }
+
+    /// The fields that are profiles; they come first.
+    pub fn profiles(&self) -> impl Iterator<Item = FieldId> {
+        self.fields.ids().filter(|&f| !self.fields[f].uniform)
     }
 
     /// The names that its expressions are printed with.
     pub fn lettering(&self) -> Lettering {
         Lettering {
             fields: self.field_names(),
-            parameters: self.parameters.iter().map(|p| p.name.clone()).collect(),
-            laws: self.laws.iter().map(|l| l.name.clone()).collect(),
+            parameters: self.parameters.map(|p| p.name.clone()),
+            laws: self.laws.map(|l| l.name.clone()),
             periodic: self.periodic.clone(),
             coordinate: self.coordinate().to_owned(),
         }
@@ -81,10 +87,10 @@ impl Model {
 
 /// Names of fields, parameters, laws and the coordinates.
 pub struct Lettering {
-    /// In the order of their declaration.
-    pub fields: Vec<String>,
-    parameters: Vec<String>,
-    laws: Vec<String>,
+    /// Names of the fields.
+    pub fields: Table<FieldId, String>,
+    parameters: Table<ParameterId, String>,
+    laws: Table<LawId, String>,
     periodic: String,
     coordinate: String,
 }
@@ -203,8 +209,8 @@ pub struct Balance {
     pub residual: Id,
     /// What the balance is divided by.
     pub divisor: Option<Id>,
-    /// The field that it is for, by position.
-    pub paired_field: Option<usize>,
+    /// The field that it is for.
+    pub paired_field: Option<FieldId>,
     /// Where the spec says so.
     pub location: Location,
 }
@@ -217,7 +223,7 @@ pub struct Condition {
     /// Left side minus right side.
     pub residual: Id,
     /// Switches and the choices under which the condition holds.
-    pub guard: Vec<(usize, usize)>,
+    pub guard: Vec<(ParameterId, usize)>,
     /// Where the spec says so.
     pub location: Location,
 }
@@ -236,15 +242,15 @@ pub struct Integral {
 /// What the spec says of the base state.
 pub struct Base {
     /// Closed form of each field, where the spec gives one.
-    pub closed: Vec<Option<Id>>,
+    pub closed: Table<FieldId, Option<Id>>,
     /// A start for each field that is solved for.
-    pub guesses: Vec<Option<Id>>,
+    pub guesses: Table<FieldId, Option<Id>>,
     /// Its conditions.
     pub conditions: Vec<Condition>,
     /// Prescribed integrals.
     pub integrals: Vec<Integral>,
     /// Conditions that determine a parameter set to `auto`.
-    pub automatic: Vec<(usize, Condition)>,
+    pub automatic: Vec<(ParameterId, Condition)>,
     /// Where the spec says so.
     pub location: Location,
 }
@@ -261,15 +267,15 @@ pub enum Closure {
     },
     /// A field that is determined up to a constant.
     Gauge {
-        /// Which field, by position.
-        field: usize,
+        /// Which field.
+        field: FieldId,
         /// Where the spec says so.
         location: Location,
     },
     /// A number with a condition of its own.
     Unknown {
-        /// Which field, by position.
-        field: usize,
+        /// Which field.
+        field: FieldId,
         /// Its condition.
         integral: Integral,
     },
@@ -288,8 +294,8 @@ pub enum Amplitude {
     },
     /// |field| = |value| at a place
     Point {
-        /// Which field, by position.
-        field: usize,
+        /// Which field.
+        field: FieldId,
         /// Where, if not everywhere.
         place: Option<Id>,
         /// What it has to be.
@@ -301,8 +307,8 @@ pub enum Amplitude {
 
 /// weight |field|², the weight also as the user wrote it; nothing for 1.
 pub struct Weight {
-    /// Which field, by position.
-    pub field: usize,
+    /// Which field.
+    pub field: FieldId,
     /// Its weight.
     pub weight: Id,
     /// As the spec writes it.

@@ -4,22 +4,21 @@ use super::Parameter;
 use super::context::Context;
 use super::scope::{Names, Resolved, View};
 use crate::diagnostic::{Diagnostic, nearest};
-use crate::graph::{Id, Node};
+use crate::graph::{Id, Node, ParameterId};
 use crate::syntax::tree::*;
 use num_traits::ToPrimitive;
 
 impl Names {
-    /// The index of a parameter seen from a scope; a law file's own are registered on first use.
-    pub fn find_parameter(&mut self, name: &str, scope: usize) -> Option<usize> {
-        if let Some(known) = self.parameters.iter().position(|p| p.name == name) {
+    /// A parameter seen from a scope; a law file's own are registered on first use.
+    pub fn find_parameter(&mut self, name: &str, scope: usize) -> Option<ParameterId> {
+        if let Some(known) = self.parameters.position(|p| p.name == name) {
             let visible = scope == 0 || self.scopes[scope].parameters.contains_key(name);
             return visible.then_some(known);
         }
         let item = self.scopes[scope].parameters.get(name).cloned()?;
         let parameter = self.constant_parameter(&item)?;
-        self.parameters.push(parameter);
         self.used.push(true);
-        Some(self.parameters.len() - 1)
+        Some(self.parameters.push(parameter))
     }
 
     /// The rational value of an expression in numbers alone.

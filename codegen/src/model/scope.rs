@@ -3,7 +3,9 @@
 use super::Parameter;
 use super::context::Context;
 use crate::diagnostic::{Diagnostic, Location, SourceFile};
-use crate::graph::{Function, Graph, Id, Jet, LawAtom, Node, Operator, Rational};
+use crate::graph::{
+    FieldId, Function, Graph, Id, Jet, LawAtom, LawId, Node, Operator, ParameterId, Rational, Table,
+};
 use crate::syntax::tree::*;
 use num_traits::{One, ToPrimitive};
 use std::collections::BTreeMap;
@@ -31,12 +33,12 @@ pub(super) struct Names {
     pub graph: Graph,
     pub files: Vec<SourceFile>,
     pub scopes: Vec<Scope>,
-    pub parameters: Vec<Parameter>,
-    pub fields: BTreeMap<String, usize>,
+    pub parameters: Table<ParameterId, Parameter>,
+    pub fields: BTreeMap<String, FieldId>,
     pub field_count: usize,
     /// Opaque laws of the model by name.
-    pub laws: BTreeMap<String, usize>,
-    pub used: Vec<bool>,
+    pub laws: BTreeMap<String, LawId>,
+    pub used: Table<ParameterId, bool>,
     /// Mistakes beside the first of an expression.
     pub further: Vec<Diagnostic>,
     pub periodic: String,
@@ -63,11 +65,11 @@ impl Names {
             graph: Graph::new(),
             files: Vec::new(),
             scopes: Vec::new(),
-            parameters: Vec::new(),
+            parameters: Table::default(),
             fields: BTreeMap::new(),
             field_count: 0,
             laws: BTreeMap::new(),
-            used: Vec::new(),
+            used: Table::default(),
             further: Vec::new(),
             periodic: "x".into(),
             coordinate: None,
@@ -261,8 +263,8 @@ impl Names {
         Err(self.unknown(name, place, view))
     }
 
-    pub fn law_atom(&mut self, law: usize) -> Id {
-        let index = vec![0; self.field_count];
+    pub fn law_atom(&mut self, law: LawId) -> Id {
+        let index = Table::filled(self.field_count, 0);
         self.graph.state_law(LawAtom { law, index, y: 0 })
     }
 

@@ -41,7 +41,9 @@ pub(super) fn model(
     }
     let mut laws = bind_imports(imported, names, mistakes);
     for definition in tree.definitions.iter().filter(|d| d.is_law) {
-        laws.extend(law(definition, laws.len(), names, mistakes));
+        if let Some(law) = law(definition, names, mistakes) {
+            names.laws.insert(law.name.clone(), laws.push(law));
+        }
     }
     let interval = declaration::interval(tree, names, mistakes);
     let balances = tree
@@ -111,7 +113,6 @@ pub(super) fn model(
 
 fn law(
     definition: &Definition,
-    index: usize,
     names: &mut Names,
     mistakes: &mut Vec<Diagnostic>,
 ) -> Option<Law> {
@@ -132,7 +133,6 @@ fn law(
     }
     let body = keep(names.resolve(&definition.body, Context::Law), mistakes);
     let body = body.unwrap_or_else(|| names.graph.zero());
-    names.laws.insert(text.clone(), index);
     Some(Law {
         name: text,
         doc: definition.doc.clone(),
@@ -151,7 +151,7 @@ fn check_definitions(names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
             break;
         }
         let count = definition.arguments.as_deref().unwrap_or_default().len();
-        let stand_in = names.graph.jet(Jet::value(0));
+        let stand_in = names.graph.jet(Jet::value(FieldId(0)));
         let place = definition.name.location.clone();
         let values = vec![stand_in; count];
         keep(
@@ -170,7 +170,7 @@ fn difference(equation: &Equation, names: &mut Names) -> Resolved<Id> {
     Ok(names.graph.sub(left, right))
 }
 
-pub(super) fn field_index(name: &Name, names: &Names) -> Resolved<usize> {
+pub(super) fn field_index(name: &Name, names: &Names) -> Resolved<FieldId> {
     names.fields.get(&name.text).copied().ok_or_else(|| {
         let mut fields: Vec<&str> = names.fields.keys().map(String::as_str).collect();
         fields.sort_unstable();
@@ -218,7 +218,7 @@ fn base(
     mistakes: &mut Vec<Diagnostic>,
 ) -> Base {
     let profiles = |items: &[(Name, Expression)], names: &mut Names, mistakes: &mut Vec<_>| {
-        let mut found = vec![None; fields];
+        let mut found = Table::filled(fields, None);
         for (name, expression) in items {
             let Some(field) = keep(field_index(name, names), mistakes) else {
                 continue;
@@ -342,7 +342,7 @@ fn wall_conditions(
 fn conditions(
     items: &[ConditionItem],
     end: End,
-    guard: &[(usize, usize)],
+    guard: &[(ParameterId, usize)],
     names: &mut Names,
     mistakes: &mut Vec<Diagnostic>,
     found: &mut Vec<Condition>,

@@ -2,7 +2,7 @@
 
 use super::scope::{Names, Resolved, View};
 use crate::diagnostic::{Diagnostic, Location, nearest};
-use crate::graph::Id;
+use crate::graph::{Id, ParameterId};
 use crate::syntax::tree::{Expression, Name};
 
 impl Names {
@@ -28,7 +28,7 @@ impl Names {
         branches: &[(Name, T)],
         scope: usize,
         place: &Location,
-    ) -> Resolved<(usize, Vec<usize>)> {
+    ) -> Resolved<(ParameterId, Vec<usize>)> {
         let parameter = self.find_parameter(&switch.text, scope).ok_or_else(|| {
             let message = format!("`{}` is not a switch", switch.text);
             Diagnostic::new(
