@@ -41,7 +41,7 @@ fn point(
     set: &[(&str, f64)],
 ) -> Option<PointReport> {
     let model = built(name);
-    let mut setup = Setup::new(model.as_ref(), m);
+    let mut setup = Setup::new(model.clone(), m);
     let set: Vec<String> = set.iter().map(|(n, v)| format!("{n}={v:e}")).collect();
     setup.set(&set).expect("parameters");
     let selection = near.map_or(Selection::Leading, Selection::Near);
@@ -141,7 +141,7 @@ fn bed(r: &mut Random) -> Option<Trial> {
 
 /// The truth lies inside the bars (its own added) for 99% at least, and nowhere far outside.
 #[test]
-#[ignore = "slow"]
+#[ignore = "slow profile"]
 fn error_bars_hold() {
     type Draw = fn(&mut Random) -> Option<Trial>;
     let models: [(&str, Draw, u64); 7] = [
@@ -193,10 +193,10 @@ fn error_bars_hold() {
 
 /// A bed far from any that the model has: refused by name, and not after minutes.
 #[test]
-#[ignore = "slow"]
+#[ignore = "slow profile"]
 fn a_base_state_out_of_reach_ends() {
     let model = built("vibrated_bed");
-    let mut setup = Setup::new(model.as_ref(), 50);
+    let mut setup = Setup::new(model.clone(), 50);
     let settings = ["F=40", "S=5", "e=0.5", "H=auto"].map(str::to_owned);
     setup.set(&settings).expect("parameters");
     let error = setup.base(None).expect_err("none is known there");

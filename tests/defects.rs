@@ -16,18 +16,18 @@ fn with_expansion<R>(
     action: impl FnOnce(&Problem, Expansion) -> R,
 ) -> R {
     let model = built(name);
-    let mut setup = Setup::new(model.as_ref(), m);
+    let mut setup = Setup::new(model.clone(), m);
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     setup.set(&set).expect("parameters");
     let base = setup.base(None).expect("a base state");
-    let answer = setup.with_problem(&base, |problem| {
-        let pair = |&(k, near): &(f64, Option<C64>)| {
-            select(problem, k, near.map_or(Selection::Leading, Selection::Near))
-        };
-        let pairs: landau_solver::error::Result<Vec<_>> = modes.iter().map(pair).collect();
-        Ok(action(problem, Expansion::to(problem, pairs?, order)?))
-    });
-    answer.expect("the expansion")
+    let problem = setup.problem(&base).expect("a problem");
+    let pair = |&(k, near): &(f64, Option<C64>)| {
+        let selection = near.map_or(Selection::Leading, Selection::Near);
+        select(&problem, k, selection).expect("a mode")
+    };
+    let pairs = modes.iter().map(pair).collect();
+    let expansion = Expansion::to(&problem, pairs, order).expect("the expansion");
+    action(&problem, expansion)
 }
 
 /// The defect of order 3, 5, 7 falls as the fourth, sixth, eighth power, of pairs too.

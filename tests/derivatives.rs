@@ -6,7 +6,9 @@ use landau_solver::Model;
 use landau_solver::model::C64;
 use landau_solver::spectrum::{EigenPair, follow, leading};
 use landau_solver::study::Setup;
-use landau_solver::study::sensitivity::{parameters, wavenumber};
+use landau_solver::study::sensitivity::parameters;
+use landau_solver::weakly::Envelope;
+use std::sync::Arc;
 
 /// Model, wavenumber, M, settings.
 type Case = (&'static str, f64, usize, &'static [&'static str]);
@@ -39,30 +41,26 @@ const CASES: [Case; 17] = [
 /// c0 of the mode next to `pair` at other parameters and another wavenumber.
 fn growth(setup: &Setup, pair: &EigenPair, k: f64) -> C64 {
     let base = setup.base(None).expect("a base state");
-    let found = setup.with_problem(&base, |problem| follow(problem, k, pair));
-    found.expect("the mode").c
+    let problem = setup.problem(&base).expect("a problem");
+    follow(&problem, k, pair).expect("the mode").c
 }
 
 #[test]
 fn derivatives_of_the_growth_rate() {
     for (name, k, m, settings) in CASES {
         let model = built(name);
-        check(model.as_ref(), name, k, m, settings);
+        check(&model, name, k, m, settings);
     }
 }
 
-fn check(model: &dyn Model, name: &str, k: f64, m: usize, settings: &[&str]) {
-    let mut setup = Setup::new(model, m);
+fn check(model: &Arc<dyn Model>, name: &str, k: f64, m: usize, settings: &[&str]) {
+    let mut setup = Setup::new(model.clone(), m);
     let settings: Vec<String> = settings.iter().map(|s| (*s).to_owned()).collect();
     setup.set(&settings).expect("settings");
     let base = setup.base(None).expect("a base state");
-    let (pair, slope) = setup
-        .with_problem(&base, |problem| {
-            let pair = leading(problem, k)?;
-            let slope = wavenumber(problem, &pair);
-            Ok((pair, slope))
-        })
-        .expect("a mode");
+    let problem = setup.problem(&base).expect("a problem");
+    let pair = leading(&problem, k).expect("a mode");
+    let slope = Envelope::of(&problem, &pair).expect("its envelope").slope;
     let unit = pair.scale.max(pair.c.norm());
     let compare = |what: &str, found: C64, by_difference: C64, size: f64| {
         // The difference itself is off by h² and by rounding over h.
@@ -75,15 +73,15 @@ fn check(model: &dyn Model, name: &str, k: f64, m: usize, settings: &[&str]) {
     let h = 1e-4 * k;
     let difference = (growth(&setup, &pair, k + h) - growth(&setup, &pair, k - h)) / (2.0 * h);
     compare("k", slope, difference, k);
-    for (index, found) in parameters(&setup, &base, &pair) {
-        let info = &model.structure().parameters[index];
+    for (id, found) in parameters(&setup, &base, &pair) {
+        let info = &model.structure().parameters[id];
         let found = found.expect("a derivative");
-        let value = setup.parameters.values[index];
+        let value = setup.parameters.values[id];
         let size = if value == 0.0 { 1.0 } else { value.abs() };
         let h = 1e-4 * size;
         let at = |value: f64| {
             let mut moved = setup.clone();
-            moved.parameters.values[index] = value;
+            moved.parameters.values[id] = value;
             growth(&moved, &pair, k)
         };
         let difference = if value + h > info.upper {
@@ -120,14 +118,12 @@ fn extremum_with_a_wavenumber_in_a_condition() {
         crate::support::number(&found, "/k"),
     );
     let model = built("vibrated_bed");
-    let mut setup = Setup::new(model.as_ref(), 50);
+    let mut setup = Setup::new(model.clone(), 50);
     let settings = ["top=decaying".to_owned(), format!("S={s}")];
     setup.set(&settings).expect("settings");
     let base = setup.base(None).expect("a base state");
-    let growth = |k: f64| {
-        let found = setup.with_problem(&base, |problem| Ok(leading(problem, k)?.c.re));
-        found.expect("a mode")
-    };
+    let problem = setup.problem(&base).expect("a problem");
+    let growth = |k: f64| leading(&problem, k).expect("a mode").c.re;
     // The crest of a parabola through three points.
     let h = 1e-3;
     let (low, middle, high) = (growth(k - h), growth(k), growth(k + h));

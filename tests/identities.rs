@@ -3,13 +3,16 @@
 
 use crate::support::{built, tape};
 use landau_solver::Model;
-use landau_solver::collocation::Discretisation;
-use landau_solver::model::{C64, Kernel, KernelId, ResidualId, Structure, evaluate};
+use landau_solver::model::{
+    BalanceId, C64, CaseId, Kernel, KernelId, ResidualId, Structure, evaluate,
+};
 use landau_solver::problem::Problem;
 use landau_solver::series::Monomial;
+use landau_solver::space::Place;
 use landau_solver::study::Setup;
 use landau_solver::study::verify::{duality, residual_order, second_route};
 use landau_solver::weakly::{self, Expansion, Selection};
+use std::sync::Arc;
 
 /// Model, wavenumber, M, parameters: off criticality throughout.
 type Case = (
@@ -55,12 +58,12 @@ const CASES: [Case; 13] = [
 ];
 
 fn with_problem<R>(
-    model: &dyn Model,
+    model: &Arc<dyn Model>,
     resolution: usize,
     settings: &[(&str, &str)],
-    action: impl FnOnce(&Problem) -> R,
+    action: impl FnOnce(&Arc<Problem>) -> R,
 ) -> R {
-    let mut setup = Setup::new(model, resolution);
+    let mut setup = Setup::new(model.clone(), resolution);
     for (name, value) in settings {
         setup
             .parameters
@@ -68,24 +71,22 @@ fn with_problem<R>(
             .expect("a parameter");
     }
     let base = setup.base(None).expect("a base state");
-    let discretisation = Discretisation::new();
-    let problem = Problem::new(model, &base, &discretisation, setup.effective_resolution());
-    action(&problem.expect("a problem"))
+    action(&setup.problem(&base).expect("a problem"))
 }
 
 /// The order of the residual in A.
-fn order(problem: &Problem, k: f64) -> f64 {
+fn order(problem: &Arc<Problem>, k: f64) -> f64 {
     order_of(problem, k, 3)
 }
 
-fn order_of(problem: &Problem, k: f64, order: usize) -> f64 {
+fn order_of(problem: &Arc<Problem>, k: f64, order: usize) -> f64 {
     let pair = weakly::select(problem, k, Selection::Leading).expect("a mode");
     let expansion = Expansion::to(problem, vec![pair], order).expect("the expansion");
     residual_order(&expansion).slope.unwrap_or(f64::NAN)
 }
 
 /// c2 by the forms against c2 by the series of the residual, relative to what it is the sum of.
-fn forms_against_series(problem: &Problem, k: f64) -> f64 {
+fn forms_against_series(problem: &Arc<Problem>, k: f64) -> f64 {
     let point = weakly::point(problem, k, Selection::Leading).expect("a point");
     let expansion = Expansion::to(problem, vec![point.pair.clone()], 2).expect("second order");
     let cubic = Monomial {
@@ -99,7 +100,7 @@ fn forms_against_series(problem: &Problem, k: f64) -> f64 {
 #[test]
 fn residual_falls_as_fourth_power() {
     for (name, k, m, settings) in CASES {
-        let found = with_problem(built(name).as_ref(), m, settings, |p| order(p, k));
+        let found = with_problem(&built(name), m, settings, |p| order(p, k));
         assert!(
             (found - 4.0).abs() < 0.08,
             "{name} {settings:?} at k = {k}: order {found}"
@@ -110,7 +111,7 @@ fn residual_falls_as_fourth_power() {
 #[test]
 fn duality_by_quadrature() {
     for (name, k, m, settings) in CASES {
-        let worst = with_problem(built(name).as_ref(), m, settings, |p| {
+        let worst = with_problem(&built(name), m, settings, |p| {
             (0..6).map(|seed| duality(p, k, seed)).fold(0.0, f64::max)
         });
         assert!(worst < 1e-10, "{name} {settings:?}: {worst:.2e}");
@@ -121,9 +122,8 @@ fn duality_by_quadrature() {
 fn forms_are_symmetric_and_equal_the_series_route() {
     for (name, _, m, settings) in CASES {
         for degree in [2, 3] {
-            let (difference, asymmetry) = with_problem(built(name).as_ref(), m, settings, |p| {
-                second_route(p, degree)
-            });
+            let (difference, asymmetry) =
+                with_problem(&built(name), m, settings, |p| second_route(p, degree));
             assert!(
                 difference < 1e-10,
                 "{name} N{degree}: {difference:.2e} from the series route"
@@ -148,20 +148,20 @@ fn tape_equals_emitted_code() {
     ] {
         let (emitted, tape) = (built(name), tape(name));
         assert_eq!(emitted.structure(), tape.structure(), "{name}");
-        with_problem(emitted.as_ref(), 20, &[], |problem| {
-            for xi in [-0.8, 0.1, 0.93] {
-                let point = problem.base.point(emitted.as_ref(), xi, 1.3);
+        with_problem(&emitted, 20, &[], |problem| {
+            for part in [0.1, 0.55, 0.965] {
+                let point = problem.base.at(Place::at(part), 1.3);
                 for kernel in [
                     KernelId::Base,
                     KernelId::Linear,
                     KernelId::Adjoint,
                     KernelId::Nonlinear,
-                    KernelId::Conditions(0),
+                    KernelId::Conditions(CaseId(0)),
                     KernelId::Outputs,
                 ] {
                     let (a, b) = (
                         evaluate(emitted.as_ref(), kernel, &point),
-                        evaluate(&tape, kernel, &point),
+                        evaluate(tape.as_ref(), kernel, &point),
                     );
                     assert_eq!(a, b, "{name} {kernel:?}");
                 }
@@ -173,14 +173,14 @@ fn tape_equals_emitted_code() {
                         .collect()
                 };
                 let (x, y) = (jets(0.3), jets(1.7));
-                for row in 0..structure.balances.len() {
+                for row in structure.balances.ids() {
                     let (a, b) = (
                         emitted.form(2, row, &c, &[&x, &y]),
                         tape.form(2, row, &c, &[&x, &y]),
                     );
                     assert!(
                         (a - b).norm() <= 1e-13 * a.norm().max(1.0),
-                        "{name} row {row}: {a} {b}"
+                        "{name} {row:?}: {a} {b}"
                     );
                 }
             }
@@ -191,7 +191,7 @@ fn tape_equals_emitted_code() {
 /// The continuous adjoint, discretised on its own, against the direct problem (P figure 3).
 #[test]
 fn adjoint_eigenvalue_along_the_sweep() {
-    with_problem(built("vibrated_bed").as_ref(), 100, &[], |problem| {
+    with_problem(&built("vibrated_bed"), 100, &[], |problem| {
         for k in [0.04, 0.07, 0.1, 0.13, 0.16, 0.174] {
             let pair = landau_solver::spectrum::leading(problem, k).expect("a mode");
             let adjoint = landau_solver::study::quadrature::adjoint_mode(problem, &pair)
@@ -207,7 +207,7 @@ fn adjoint_eigenvalue_along_the_sweep() {
 fn adjoint_difference_falls_with_resolution() {
     let settings: &[(&str, &str)] = &[("F", "16"), ("S", "400")];
     let difference = |m: usize| {
-        with_problem(built("vibrated_bed").as_ref(), m, settings, |problem| {
+        with_problem(&built("vibrated_bed"), m, settings, |problem| {
             let pair = landau_solver::spectrum::leading(problem, 0.1).expect("a mode");
             let adjoint = landau_solver::study::quadrature::adjoint_mode(problem, &pair)
                 .expect("its adjoint");
@@ -240,7 +240,7 @@ fn slow_modes_of_the_adjoint_converge() {
 
 /// A model one of whose emitted coefficients has the wrong sign.
 struct Planted {
-    model: Box<dyn Model>,
+    model: Arc<dyn Model>,
     kernel: KernelId,
     coefficient: usize,
 }
@@ -265,7 +265,7 @@ impl Model for Planted {
         }
     }
 
-    fn form(&self, degree: usize, row: usize, c: &[f64], x: &[&[C64]]) -> C64 {
+    fn form(&self, degree: usize, row: BalanceId, c: &[f64], x: &[&[C64]]) -> C64 {
         self.model.form(degree, row, c, x)
     }
 
@@ -274,16 +274,20 @@ impl Model for Planted {
     }
 }
 
+fn plant(model: &Arc<dyn Model>, kernel: KernelId, coefficient: usize) -> Arc<dyn Model> {
+    Arc::new(Planted {
+        model: model.clone(),
+        kernel,
+        coefficient,
+    })
+}
+
 /// A wrong sign in one emitted term breaks the second route and c2 by the series.
 #[test]
 fn planted_sign_is_found() {
     let count = built("vibrated_bed").structure().form_coefficients;
     for coefficient in [1, count / 3, 2 * count / 3] {
-        let planted = Planted {
-            model: built("vibrated_bed"),
-            kernel: KernelId::Nonlinear,
-            coefficient,
-        };
+        let planted = plant(&built("vibrated_bed"), KernelId::Nonlinear, coefficient);
         let (cubic, second, third) = with_problem(&planted, 50, &[], |problem| {
             (
                 forms_against_series(problem, 0.16),
@@ -331,19 +335,16 @@ type Planting = (
 
 fn signs_are_found(cases: &[Planting]) {
     for &(name, k, m, settings) in cases {
-        let plant = |kernel: KernelId, coefficient: usize| Planted {
-            model: built(name),
-            kernel,
-            coefficient,
-        };
         let model = built(name);
+        let plant = |kernel: KernelId, coefficient: usize| plant(&model, kernel, coefficient);
         let structure = model.structure();
         // A coefficient that vanishes at this base state has no sign.
         let vanishes = |kernel: KernelId, coefficient: usize| {
-            let values = with_problem(model.as_ref(), m, settings, |problem| {
-                let at = |xi: f64| problem.base.point(model.as_ref(), xi, k);
-                [-1.0, -0.7, 0.1, 0.6, 1.0]
-                    .map(|xi| evaluate(model.as_ref(), kernel, &at(xi))[coefficient])
+            let values = with_problem(&model, m, settings, |problem| {
+                let places = problem.space().evenly(5).into_iter();
+                let states = places.map(|place| problem.base.at(place, k));
+                let values = states.map(|at| evaluate(model.as_ref(), kernel, &at)[coefficient]);
+                values.collect::<Vec<f64>>()
             });
             values.iter().all(|v| *v == 0.0)
         };
@@ -361,7 +362,7 @@ fn signs_are_found(cases: &[Planting]) {
                 "{name}: {coefficient} passed the second route"
             );
         }
-        let broken = |planted: &Planted| {
+        let broken = |planted: &Arc<dyn Model>| {
             with_problem(planted, m, settings, |problem| {
                 (0..4)
                     .map(|seed| duality(problem, k, seed))
@@ -375,13 +376,13 @@ fn signs_are_found(cases: &[Planting]) {
                 assert!(broken(&planted), "{name}: term {coefficient} of L† passed");
             }
         }
-        let Ok(conditions) = &structure.cases[0].adjoint else {
+        let Ok(conditions) = &structure.cases[CaseId(0)].adjoint else {
             panic!("{name} has adjoint conditions");
         };
         let mut first = 0;
         for condition in conditions {
             for coefficient in first..first + condition.jets.len() {
-                let kernel = KernelId::AdjointConditions(0);
+                let kernel = KernelId::AdjointConditions(CaseId(0));
                 if condition.jets.len() > 1 && !vanishes(kernel, coefficient) {
                     let planted = plant(kernel, coefficient);
                     assert!(broken(&planted), "{name}: condition {coefficient} passed");

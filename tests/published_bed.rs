@@ -2,7 +2,7 @@
 //! independent program (spectral collocation, truncated series, fully nonlinear Newton solution).
 
 use crate::support::{built, close, json, landau, number, root};
-use landau_solver::collocation::{Grid, GridKind, clenshaw_curtis};
+use landau_solver::model::End;
 use landau_solver::study::Setup;
 use rayon::prelude::*;
 
@@ -276,7 +276,7 @@ fn base_states() {
                 format!("e={e}"),
                 format!("H={height}"),
             ];
-            let mut setup = Setup::new(model.as_ref(), 50);
+            let mut setup = Setup::new(model.clone(), 50);
             for (name, text) in settings.iter().filter_map(|s| s.split_once('=')) {
                 let set = setup.parameters.set_text(model.structure(), name, text);
                 set.expect("a parameter of the bed");
@@ -285,38 +285,37 @@ fn base_states() {
                 .base(None)
                 .unwrap_or_else(|error| panic!("{settings:?}: {error}"));
             let structure = model.structure();
-            let place = |field: &str, order| {
-                let field = structure.fields.iter().position(|f| f.name == field);
-                structure.base_position(field.expect("a field"), order)
+            let value = |point: &[f64], field: &str, order| {
+                let field = structure.field(field).expect("a field");
+                structure.base_value(point, field, order)
             };
-            let bottom = state.point(model.as_ref(), -1.0, 0.0);
-            close(
-                &format!("T(0) {settings:?}"),
-                bottom[place("T", 0)],
-                1.0,
-                1e-10,
-            );
+            let bottom = state.at_end(End::Lower);
+            let temperature = value(&bottom, "T", 0);
+            close(&format!("T(0) {settings:?}"), temperature, 1.0, 1e-10);
             // κ grows with √T: the flux against that of the whole bed.
-            let top = state.point(model.as_ref(), 1.0, 0.0);
-            let flux = |point: &[f64]| point[place("T", 0)].sqrt() * point[place("T", 1)];
+            let top = state.at_end(End::Upper);
+            let flux = |point: &[f64]| value(point, "T", 0).sqrt() * value(point, "T", 1);
             close(
                 &format!("flux(H) {settings:?}"),
                 flux(&top) / flux(&bottom),
                 0.0,
                 1e-10,
             );
-            // ∫n by a rule of its own: 600 panels of 17 points.
-            let weights = clenshaw_curtis(17);
-            let nodes = Grid::new(GridKind::Lobatto(17)).nodes;
-            let (panels, mut mass) = (600, 0.0);
-            for panel in 0..panels {
-                for (node, weight) in nodes.iter().zip(&weights) {
-                    let xi = -1.0 + (2.0 * f64::from(panel) + 1.0 + node) / f64::from(panels);
-                    let point = state.point(model.as_ref(), xi, 0.0);
-                    mass += weight * point[place("n", 0)] / f64::from(panels);
-                }
-            }
-            mass *= 0.5 * (state.upper - state.lower);
+            // ∫n by a rule of its own: 4000 panels of five points (Boole).
+            let ends = state.space.ends().expect("an interval");
+            let (panels, length) = (4000, ends[1] - ends[0]);
+            let at = |i: usize| {
+                let y = ends[0] + length * i as f64 / (4 * panels) as f64;
+                value(&state.at(state.space.place(y), 0.0), "n", 0)
+            };
+            let weight = |i: usize| match i % 4 {
+                0 if i == 0 || i == 4 * panels => 7.0,
+                0 => 14.0,
+                2 => 12.0,
+                _ => 32.0,
+            };
+            let sum: f64 = (0..=4 * panels).map(|i| weight(i) * at(i)).sum();
+            let mass = sum * length / (90 * panels) as f64;
             close(&format!("mass {settings:?}"), mass, layers, 1e-10 * layers);
         });
     // What cannot be resolved is refused.

@@ -1,10 +1,11 @@
 //! The specs of `spec/RECIPES.md`, run against the numbers that stand beside them.
 
 use crate::support::{close, json, landau, number, root, written};
-use landau_solver::model::{End, Model};
+use landau_solver::model::{End, FieldId, Model};
 use landau_solver::spectrum::leading;
 use landau_solver::study::Setup;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 fn recipe(name: &str) -> PathBuf {
     let page = std::fs::read_to_string(root().join("spec/RECIPES.md")).expect("the page");
@@ -81,17 +82,17 @@ fn stream_function() {
 #[test]
 fn blasius() {
     let sources = landau_codegen::build::read_sources(&recipe("blasius.model")).expect("a spec");
-    let model = landau_codegen::tape(&sources).expect("well formed");
+    let model: Arc<dyn Model> = Arc::new(landau_codegen::tape(&sources).expect("well formed"));
     let k = 0.3038 / 1.7207876573;
     let growth = |reynolds: f64| {
-        let mut setup = Setup::new(&model, 90);
+        let mut setup = Setup::new(model.clone(), 90);
         setup.set(&[format!("R={reynolds}")]).expect("a parameter");
         let base = setup.base(None).expect("a base state");
         // f''(0) of Blasius
-        let wall = base.at_end(&model, End::Lower)[model.structure().base_position(5, 0)];
+        let wall = base.value(FieldId(5), base.space.end(End::Lower));
         close("curvature at the wall", wall, 0.332057336215, 1e-9);
-        let found = setup.with_problem(&base, |problem| Ok(leading(problem, k)?.c.re));
-        found.expect("a mode")
+        let problem = setup.problem(&base).expect("a problem");
+        leading(&problem, k).expect("a mode").c.re
     };
     let (low, high) = (growth(518.5), growth(520.3));
     let critical = 518.5 - low * 1.8 / (high - low);

@@ -1,10 +1,10 @@
 //! What the families share: the command line, models, files.
 
 use landau_solver::Model;
-use landau_solver::model::TapeModel;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub struct Answer {
@@ -60,7 +60,7 @@ pub fn root() -> PathBuf {
 }
 
 /// A built model.
-pub fn built(name: &str) -> Box<dyn Model> {
+pub fn built(name: &str) -> Arc<dyn Model> {
     let models = landau_spec::models();
     models
         .into_iter()
@@ -69,10 +69,10 @@ pub fn built(name: &str) -> Box<dyn Model> {
 }
 
 /// The same model from its tape.
-pub fn tape(name: &str) -> TapeModel {
+pub fn tape(name: &str) -> Arc<dyn Model> {
     let path = root().join(format!("spec/models/{name}.model"));
     let sources = landau_codegen::build::read_sources(&path).expect("the spec can be read");
-    landau_codegen::tape(&sources).expect("the spec is well formed")
+    Arc::new(landau_codegen::tape(&sources).expect("the spec is well formed"))
 }
 
 /// |a − b| ≤ tolerance, with a message.

@@ -62,7 +62,7 @@ pub fn generate_folder(root: &Path, out: &Path) -> Result<(), String> {
             index,
             "// Straight-line code is not judged by taste.\n#[allow(clippy::all)]\n#[doc = {title:?}]\npub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}"
         );
-        let _ = writeln!(list, "    Box::new({name}::Generated::new()),");
+        let _ = writeln!(list, "    std::sync::Arc::new({name}::Generated::new()),");
     }
     if !errors.is_empty() {
         return Err(errors);
@@ -77,7 +77,7 @@ pub fn generate_folder(root: &Path, out: &Path) -> Result<(), String> {
     );
     let _ = writeln!(
         index,
-        "/// Every model of this crate.\npub fn models() -> Vec<Box<dyn landau_contract::Model>> {{\n    vec![\n{list}    ]\n}}"
+        "/// Every model of this crate.\npub fn models() -> Vec<std::sync::Arc<dyn landau_contract::Model>> {{\n    vec![\n{list}    ]\n}}"
     );
     fs::write(out.join("models.rs"), index).map_err(|e| e.to_string())
 }

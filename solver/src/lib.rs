@@ -2,22 +2,24 @@
 //!
 //! Data flows one way, one module a stage:
 //!
-//! [`model`] (the contract: kernels, number types) → [`base`] (base state) → [`collocation`] and [`problem`]
-//! (matrices, as [`pencil`]s) → [`spectrum`] (modes) → [`weakly`] (amplitude expansion, Landau coefficients) →
-//! [`study`] (points, critical points, sweeps, certificate). Numerics alone: figures, reports and the command line
-//! stand above, in crates of their own.
+//! [`model`] (the contract: kernels, number types) → [`base`] (base state) → [`space`] and [`problem`] (collocation:
+//! matrices, as [`pencil`]s) → [`spectrum`] (modes) → [`weakly`] (amplitude expansion, Landau coefficients) →
+//! [`study`] (points, critical points, sweeps, certificate); [`numerics`] serves all of them. Numerics alone: figures,
+//! reports and the command line stand above, in crates of their own. Results own their data. Points run in parallel
+//! on the rayon pool that the caller is in; a matrix belongs to one thread.
 //!
 //! ```
 //! use landau_solver::model::C64;
 //! use landau_solver::study::Setup;
 //! use landau_solver::weakly::Selection;
 //! use landau_solver::{Model, error::Result};
+//! use std::sync::Arc;
 //!
 //! /// c2 of the leading mode at one wavenumber, with M = 50.
-//! fn first_landau_coefficient(model: &dyn Model, k: f64) -> Result<C64> {
+//! fn first_landau_coefficient(model: Arc<dyn Model>, k: f64) -> Result<C64> {
 //!     let setup = Setup::new(model, 50);
 //!     let base = setup.base(None)?;
-//!     setup.with_point(&base, k, Selection::Leading, |point| Ok(point.c2))
+//!     Ok(setup.point(&base, k, Selection::Leading)?.c2)
 //! }
 //! ```
 
@@ -26,14 +28,15 @@
 #![warn(missing_docs)]
 
 pub mod base;
-pub mod collocation;
-pub mod dense;
+
 pub mod error;
 pub mod file;
+pub mod numerics;
 pub mod parameters;
 pub mod pencil;
 pub mod problem;
 pub mod series;
+pub mod space;
 pub mod spectrum;
 pub mod study;
 pub mod weakly;

@@ -1,35 +1,33 @@
 //! Parameter values by name, checked against what the model accepts.
 
 use crate::error::{Error, Result};
-use crate::model::Structure;
-use crate::model::nearest;
+use crate::model::{CaseId, Id, ParameterId, Structure, Table, nearest};
 
 /// Values of all parameters of a model; those set to `auto` are still to be determined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameters {
     /// By parameter; of a switch the position of its choice.
-    pub values: Vec<f64>,
+    pub values: Table<ParameterId, f64>,
     /// Whether the base state determines it.
-    pub automatic: Vec<bool>,
+    pub automatic: Table<ParameterId, bool>,
 }
 
 impl Parameters {
     /// The defaults of the spec.
     pub fn defaults(structure: &Structure) -> Self {
         Parameters {
-            values: structure.parameters.iter().map(|p| p.default).collect(),
-            automatic: vec![false; structure.parameters.len()],
+            values: structure.parameters.map(|p| p.default),
+            automatic: structure.parameters.map(|_| false),
         }
     }
 
-    /// Position of a parameter by name.
+    /// A parameter by name.
     ///
     /// # Errors
     /// Names the parameters there are.
-    pub fn index(structure: &Structure, name: &str) -> Result<usize> {
+    pub fn named(structure: &Structure, name: &str) -> Result<ParameterId> {
         structure
             .parameters
-            .iter()
             .position(|p| p.name == name)
             .ok_or_else(|| {
                 let names: Vec<&str> = structure
@@ -55,19 +53,19 @@ impl Parameters {
     ///
     /// # Errors
     /// Values outside the declared range.
-    pub fn set(&mut self, structure: &Structure, index: usize, value: f64) -> Result<()> {
-        let info = &structure.parameters[index];
+    pub fn set(&mut self, structure: &Structure, parameter: ParameterId, value: f64) -> Result<()> {
+        let info = &structure.parameters[parameter];
         let whole = info.choices.is_empty() || value.fract() == 0.0;
         if !value.is_finite() || value < info.lower || value > info.upper || !whole {
             return Err(Error::input(format!(
                 "{} = {value} is out of range: `{}` accepts {}",
                 info.name,
                 info.name,
-                accepts(structure, index)
+                accepts(structure, parameter)
             )));
         }
-        self.values[index] = value;
-        self.automatic[index] = false;
+        self.values[parameter] = value;
+        self.automatic[parameter] = false;
         Ok(())
     }
 
@@ -76,52 +74,51 @@ impl Parameters {
     /// # Errors
     /// Says what the parameter accepts.
     pub fn set_text(&mut self, structure: &Structure, name: &str, text: &str) -> Result<()> {
-        let index = Self::index(structure, name)?;
-        let info = &structure.parameters[index];
+        let parameter = Self::named(structure, name)?;
+        let info = &structure.parameters[parameter];
         if text == "auto" && info.automatic {
-            self.automatic[index] = true;
+            self.automatic[parameter] = true;
             return Ok(());
         }
         if let Some(choice) = info.choices.iter().position(|c| c == text) {
-            self.values[index] = choice as f64;
+            self.values[parameter] = choice as f64;
             return Ok(());
         }
         let value: f64 = text.parse().map_err(|_| {
             Error::input(format!(
                 "{name} = {text} is not a value: `{name}` accepts {}",
-                accepts(structure, index)
+                accepts(structure, parameter)
             ))
         })?;
-        self.set(structure, index, value)
+        self.set(structure, parameter, value)
     }
 
-    /// Position of the case that the structural switches select.
-    pub fn case(&self, structure: &Structure) -> usize {
-        let chosen: Vec<usize> = structure
-            .switches
-            .iter()
-            .map(|&switch| self.values[switch] as usize)
-            .collect();
-        structure
-            .cases
-            .iter()
-            .position(|case| case.choices == chosen)
-            .unwrap_or(0)
+    /// The position of a switch's choice.
+    pub fn choice(&self, switch: ParameterId) -> usize {
+        self.values[switch] as usize
+    }
+
+    /// The case that the structural switches select.
+    pub fn case(&self, structure: &Structure) -> CaseId {
+        let chosen = structure.switches.iter().map(|&switch| self.choice(switch));
+        let chosen: Vec<usize> = chosen.collect();
+        let found = structure.cases.position(|case| case.choices == chosen);
+        found.unwrap_or(CaseId::at(0))
     }
 
     /// The value of a parameter as the user writes it.
-    pub fn shown(&self, structure: &Structure, index: usize) -> String {
-        let info = &structure.parameters[index];
-        match info.choices.get(self.values[index] as usize) {
+    pub fn shown(&self, structure: &Structure, parameter: ParameterId) -> String {
+        let choices = &structure.parameters[parameter].choices;
+        match choices.get(self.choice(parameter)) {
             Some(choice) => choice.clone(),
-            None => format!("{}", self.values[index]),
+            None => format!("{}", self.values[parameter]),
         }
     }
 }
 
 /// What a parameter accepts, in words.
-pub fn accepts(structure: &Structure, index: usize) -> String {
-    let info = &structure.parameters[index];
+pub fn accepts(structure: &Structure, parameter: ParameterId) -> String {
+    let info = &structure.parameters[parameter];
     let mut text = if !info.choices.is_empty() {
         format!("one of {}", info.choices.join(", "))
     } else {

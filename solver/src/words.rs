@@ -23,11 +23,11 @@ pub fn complex(value: C64) -> Value {
 pub fn parameters(setup: &Setup, parameters: &Parameters) -> Value {
     let structure = setup.model.structure();
     let mut map = Map::new();
-    for (index, info) in structure.parameters.iter().enumerate() {
+    for (id, info) in structure.parameters.pairs() {
         let value = if info.choices.is_empty() {
-            number(parameters.values[index])
+            number(parameters.values[id])
         } else {
-            Value::String(parameters.shown(structure, index))
+            Value::String(parameters.shown(structure, id))
         };
         map.insert(info.name.clone(), value);
     }

@@ -3,17 +3,15 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use landau_codegen::build::{generate_module, read_sources};
 use landau_solver::Model;
-use landau_solver::collocation::Discretisation;
-use landau_solver::problem::Problem;
 use landau_solver::study::Setup;
 use landau_solver::weakly::{Expansion, Selection, point, select, warm_point};
 use std::path::Path;
+use std::sync::Arc;
 
-fn warm(criterion: &mut Criterion, name: &str, model: &dyn Model) {
-    let setup = Setup::new(model, 50);
+fn warm(criterion: &mut Criterion, name: &str, model: &Arc<dyn Model>) {
+    let setup = Setup::new(model.clone(), 50);
     let base = setup.base(None).expect("a base state");
-    let discretisation = Discretisation::new();
-    let problem = Problem::new(model, &base, &discretisation, 50).expect("a problem");
+    let problem = setup.problem(&base).expect("a problem");
     let near = point(&problem, 0.16, Selection::Leading)
         .expect("a point")
         .pair;
@@ -23,11 +21,10 @@ fn warm(criterion: &mut Criterion, name: &str, model: &dyn Model) {
 }
 
 /// Coefficients of higher orders, and of a pair of modes: the modes known, everything else anew.
-fn series(criterion: &mut Criterion, model: &dyn Model) {
-    let setup = Setup::new(model, 50);
+fn series(criterion: &mut Criterion, model: &Arc<dyn Model>) {
+    let setup = Setup::new(model.clone(), 50);
     let base = setup.base(None).expect("a base state");
-    let discretisation = Discretisation::new();
-    let problem = Problem::new(model, &base, &discretisation, 50).expect("a problem");
+    let problem = setup.problem(&base).expect("a problem");
     let pair = |k: f64| select(&problem, k, Selection::Leading).expect("a mode");
     let cases = [
         ("order 3 by series", vec![pair(0.16)], 3),
@@ -47,24 +44,20 @@ fn series(criterion: &mut Criterion, model: &dyn Model) {
 }
 
 fn benches(criterion: &mut Criterion) {
-    faer::set_global_parallelism(faer::Par::Seq);
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../spec/models");
     let models = landau_spec::models();
     let bed = models
         .iter()
         .find(|m| m.structure().name == "vibrated_bed")
         .expect("the bed");
-    warm(
-        criterion,
-        "warm Landau point, M = 50, emitted",
-        bed.as_ref(),
-    );
-    series(criterion, bed.as_ref());
+    warm(criterion, "warm Landau point, M = 50, emitted", bed);
+    series(criterion, bed);
     let sources = read_sources(&folder.join("vibrated_bed.model")).expect("the spec");
     let tape = landau_codegen::tape(&sources).expect("a well-formed spec");
+    let tape: Arc<dyn Model> = Arc::new(tape);
     warm(criterion, "warm Landau point, M = 50, tape", &tape);
     criterion.bench_function("base state", |b| {
-        let setup = Setup::new(bed.as_ref(), 50);
+        let setup = Setup::new(bed.clone(), 50);
         b.iter(|| setup.base(None).expect("a base state").residual);
     });
     criterion.bench_function("generator, all specs", |b| {

@@ -17,9 +17,7 @@ mod state;
 mod structure;
 mod tape;
 
-pub use ids::{
-    BalanceId, BaseRowId, CaseId, FieldId, Id, LawId, ParameterId, SolvedId, Table,
-};
+pub use ids::{BalanceId, BaseRowId, CaseId, FieldId, Id, LawId, ParameterId, SolvedId, Table};
 pub use jet::{End, Function, Jet, Operator, jet};
 pub use kernel::{
     Array, Kernel, ModelKernels, Operation, RESIDUAL_INPUTS, Register, apply, choose,

@@ -241,10 +241,7 @@ pub fn demands(
 }
 
 /// A demand on conj(Y) read as a condition on Y: ∂x changes sign under conjugation.
-pub fn conjugate<V: Copy + Ord>(
-    graph: &mut Graph,
-    combination: &Combination<V>,
-) -> Combination<V> {
+pub fn conjugate<V: Copy + Ord>(graph: &mut Graph, combination: &Combination<V>) -> Combination<V> {
     let mut result = Combination::new();
     for (jet, symbol) in combination {
         let mirrored = symbol.iter().map(|(&(x, absx), &id)| {

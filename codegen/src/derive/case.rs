@@ -431,12 +431,7 @@ fn describe_demand(
     let place = interval.map_or("", |i| i.written(end));
     let mut asked: Vec<String> = combination
         .keys()
-        .map(|y| {
-            format!(
-                "{}†",
-                lettering.fields[problem.pairing[y.of]]
-            )
-        })
+        .map(|y| format!("{}†", lettering.fields[problem.pairing[y.of]]))
         .collect();
     asked.dedup();
     format!(

@@ -35,7 +35,11 @@ impl Deriver<'_> {
         false
     }
 
-    pub(super) fn check_orders(&self, forms: &Table<BalanceId, Form>, mistakes: &mut Vec<Diagnostic>) {
+    pub(super) fn check_orders(
+        &self,
+        forms: &Table<BalanceId, Form>,
+        mistakes: &mut Vec<Diagnostic>,
+    ) {
         for (form, balance) in forms.iter().zip(&self.model.balances) {
             let jets = || form.terms.keys().flatten();
             let place = balance.location.clone();
@@ -71,11 +75,7 @@ impl Deriver<'_> {
     }
 
     /// Every field must occur linearly in some balance.
-    pub(super) fn check_determined(
-        &self,
-        linear: &[DirectTerm],
-        mistakes: &mut Vec<Diagnostic>,
-    ) {
+    pub(super) fn check_determined(&self, linear: &[DirectTerm], mistakes: &mut Vec<Diagnostic>) {
         for field in self.model.profiles() {
             if !linear.iter().any(|t| t.jet.of == field) {
                 let info = &self.model.fields[field];

@@ -154,7 +154,9 @@ pub(super) fn drop_refuted(cases: &mut [Case]) {
 
 /// Whether some balance holds no time derivative.
 pub(super) fn has_massless(linear: &[DirectTerm], balances: &Table<BalanceId, Balance>) -> bool {
-    balances.ids().any(|row| !linear.iter().any(|t| t.row == row && t.jet.t > 0))
+    balances
+        .ids()
+        .any(|row| !linear.iter().any(|t| t.row == row && t.jet.t > 0))
 }
 
 /// The density as the mass matrix carries it into the balances.
@@ -340,10 +342,7 @@ fn conserved(
             .iter()
             .filter(|t| t.row == field && t.jet.is_base())
         {
-            let Some((_, weight)) = column
-                .iter()
-                .find(|(row, _)| *row == term.jet.of)
-            else {
+            let Some((_, weight)) = column.iter().find(|(row, _)| *row == term.jet.of) else {
                 continue;
             };
             let derivative = along_base(deriver.graph, *weight, term.jet.y);
@@ -374,10 +373,7 @@ fn conserved(
         for combination in demanded.values() {
             let mut parts = Vec::new();
             for (jet, id) in at_zero_wavenumber(combination) {
-                let Some((_, weight)) = column
-                    .iter()
-                    .find(|(row, _)| *row == jet.of)
-                else {
+                let Some((_, weight)) = column.iter().find(|(row, _)| *row == jet.of) else {
                     continue;
                 };
                 let derivative = along_base(deriver.graph, *weight, jet.y);

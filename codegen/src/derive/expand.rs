@@ -7,7 +7,8 @@
 use super::form::Form;
 use super::open::Dependence;
 use crate::graph::{
-    FieldId, Function, Graph, Id, Jet, LawAtom, Node, Operator, ParameterId, Rational, Table, Variable,
+    FieldId, Function, Graph, Id, Jet, LawAtom, Node, Operator, ParameterId, Rational, Table,
+    Variable,
 };
 use num_traits::{One, Zero};
 use std::collections::HashMap;
@@ -220,7 +221,12 @@ impl<'a> Expander<'a> {
 }
 
 /// ∂y^order of a base field: an atom where the base is solved for, an expression where it is given.
-pub fn base_value(graph: &mut Graph, closed: &Table<FieldId, Option<Id>>, field: FieldId, order: u8) -> Id {
+pub fn base_value(
+    graph: &mut Graph,
+    closed: &Table<FieldId, Option<Id>>,
+    field: FieldId,
+    order: u8,
+) -> Id {
     match closed[field] {
         None => graph.base(field, order),
         Some(mut value) => {

@@ -30,9 +30,7 @@ pub use parity::Parity;
 pub use wall::{BaseCondition, WallCondition};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};
-use crate::graph::{
-    BalanceId, CaseId, FieldId, Graph, Id, ParameterId, Rational, Table,
-};
+use crate::graph::{BalanceId, CaseId, FieldId, Graph, Id, ParameterId, Rational, Table};
 use crate::model::Model;
 use base::BaseProblem;
 use expand::{Expander, Inexpandable};

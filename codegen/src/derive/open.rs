@@ -17,7 +17,11 @@ pub struct Opener<'a> {
 
 impl<'a> Opener<'a> {
     /// Of the given parts.
-    pub fn new(laws: &'a Table<LawId, Law>, closed: &'a Table<FieldId, Option<Id>>, uniform: &'a Table<FieldId, bool>) -> Self {
+    pub fn new(
+        laws: &'a Table<LawId, Law>,
+        closed: &'a Table<FieldId, Option<Id>>,
+        uniform: &'a Table<FieldId, bool>,
+    ) -> Self {
         Opener {
             laws,
             closed,

@@ -15,11 +15,11 @@ pub fn pair(
     let mut weights: Vec<Vec<Option<i64>>> = Vec::with_capacity(given.len());
     for (row, orders) in orders.pairs() {
         let weight = |(field, order): (FieldId, &Option<u8>)| match (given[row], *order) {
-                (Some(wanted), _) => (wanted == field).then_some(1000),
-                // A field may be paired with a balance that does not hold it (pressure), but for want
-                // of a better one only.
-                (None, None) => Some(0),
-                (None, Some(order)) => Some(1 + i64::from(order)),
+            (Some(wanted), _) => (wanted == field).then_some(1000),
+            // A field may be paired with a balance that does not hold it (pressure), but for want
+            // of a better one only.
+            (None, None) => Some(0),
+            (None, Some(order)) => Some(1 + i64::from(order)),
         };
         weights.push(orders.pairs().map(weight).collect());
     }

@@ -6,9 +6,7 @@ use super::boundary::{
 };
 use super::form::Form;
 use super::linear::{AdjointTerm, DirectTerm};
-use crate::graph::{
-    BalanceId, FieldId, Graph, Id, Node, ParameterId, Rational, Table, Variable,
-};
+use crate::graph::{BalanceId, FieldId, Graph, Id, Node, ParameterId, Rational, Table, Variable};
 use crate::model::End;
 use num_traits::One;
 

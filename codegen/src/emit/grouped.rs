@@ -70,9 +70,7 @@ impl Writer<'_> {
             factors.retain(|(_, e)| *e != Rational::default());
             match (factors.as_slice(), what.as_str()) {
                 // A sum that nothing multiplies needs no bracket in a sum.
-                ([(sum, e)], "") if e.is_one() && number.is_one() => {
-                    self.printer().print(*sum)
-                }
+                ([(sum, e)], "") if e.is_one() && number.is_one() => self.printer().print(*sum),
                 _ => self.product(&number, &factors, what),
             }
         });

@@ -194,7 +194,8 @@ impl<'a> Writer<'a> {
         time: bool,
     ) {
         let mut blocks: BTreeMap<(Row, Column), Vec<(Id, String)>> = BTreeMap::new();
-        let mut sorted: Vec<&Term<Row, Column>> = terms.iter().filter(|t| (t.jet.t > 0) == time).collect();
+        let mut sorted: Vec<&Term<Row, Column>> =
+            terms.iter().filter(|t| (t.jet.t > 0) == time).collect();
         sorted.sort_by_key(|t| (t.jet.y, t.jet.x, t.jet.absx));
         for term in sorted {
             let operator = self.operator(Jet { t: 0, ..term.jet });

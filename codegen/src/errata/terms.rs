@@ -103,7 +103,12 @@ pub(super) fn open_chain(derivation: &mut Derivation, id: Id) -> Id {
 }
 
 /// d/dy of an expression in laws and base fields.
-fn along(graph: &mut Graph, id: Id, depends: &Dependence, closed: &Table<FieldId, Option<Id>>) -> Id {
+fn along(
+    graph: &mut Graph,
+    id: Id,
+    depends: &Dependence,
+    closed: &Table<FieldId, Option<Id>>,
+) -> Id {
     let slope = graph.differentiate(id, Variable::AlongBase);
     graph.substitute(slope, &mut |graph, node| match node {
         Node::BaseLaw(atom) if atom.y == 1 => {

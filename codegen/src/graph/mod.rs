@@ -16,8 +16,8 @@ mod zero;
 pub use calculus::Variable;
 pub use linear::LinearSystem;
 pub use node::{
-    BalanceId, CaseId, FieldId, Function, Jet, LawAtom, LawId, Node, Operator, ParameterId, Rational,
-    Table,
+    BalanceId, CaseId, FieldId, Function, Jet, LawAtom, LawId, Node, Operator, ParameterId,
+    Rational, Table,
 };
 pub use notation::{Latex, Notation, Plain};
 pub use print::Printer;

@@ -129,7 +129,10 @@ mod tests {
     #[test]
     fn what_vanishes_and_what_does_not() {
         let mut graph = Graph::new();
-        let (a, b) = (graph.parameter(ParameterId(0)), graph.parameter(ParameterId(1)));
+        let (a, b) = (
+            graph.parameter(ParameterId(0)),
+            graph.parameter(ParameterId(1)),
+        );
         let two = Rational::from_integer(2.into());
         // (a + b)² − a² − 2ab − b²
         let sum = graph.add(a, b);

@@ -218,9 +218,7 @@ impl Assembler<'_> {
             let closed = &model.base.closed;
             let state = self.opener.at_state(self.graph, condition.residual);
             let value = self.graph.substitute(state, &mut |graph, node| match node {
-                Node::Jet(jet) if jet.is_base() => {
-                    Some(base_value(graph, closed, jet.of, jet.y))
-                }
+                Node::Jet(jet) if jet.is_base() => Some(base_value(graph, closed, jet.of, jet.y)),
                 Node::Jet(_) => Some(graph.zero()),
                 _ => None,
             });

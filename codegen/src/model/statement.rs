@@ -111,11 +111,7 @@ pub(super) fn model(
     })
 }
 
-fn law(
-    definition: &Definition,
-    names: &mut Names,
-    mistakes: &mut Vec<Diagnostic>,
-) -> Option<Law> {
+fn law(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic>) -> Option<Law> {
     keep(names.check_name(&definition.name), mistakes);
     let text = definition.name.text.clone();
     if names.laws.contains_key(&text) || names.fields.contains_key(&text) {

@@ -5,17 +5,18 @@ use landau_codegen::Sources;
 use landau_codegen::derive::Derivation;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::text::{self, Section, Typeset};
+use landau_codegen::generate;
 use landau_codegen::graph::{Latex, Notation, Plain};
-use landau_codegen::{generate, tape};
-use landau_report::library::Library;
+use landau_report::library::{Library, taped};
 use landau_report::reproduce::{Errata, Formulas, all_explained};
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{CaseInfo, ClosureKind, Model};
 use landau_solver::study::Setup;
 use serde_json::json;
 use std::path::Path;
+use std::sync::Arc;
 
-pub fn models(models: &[Box<dyn Model>], json: bool) -> Result<()> {
+pub fn models(models: &[Arc<dyn Model>], json: bool) -> Result<()> {
     if json {
         let list: Vec<_> = models
             .iter()
@@ -44,8 +45,7 @@ pub fn models(models: &[Box<dyn Model>], json: bool) -> Result<()> {
 
 pub fn check(library: &Library, file: &Path) -> Result<()> {
     let sources = library.sources(file)?;
-    let model = tape(&sources)
-        .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
+    let model: Arc<dyn Model> = Arc::new(taped(&sources)?);
     check_closed_base(&model)?;
     check_claims(&model)?;
     let structure = model.structure();
@@ -64,49 +64,52 @@ const CLAIM_RESOLUTION: usize = 24;
 
 /// What a spec calls conserved without a proof has to be, at the default parameters; where switches change the
 /// walls it may be conserved for other choices.
-fn check_claims(model: &dyn Model) -> Result<()> {
+fn check_claims(model: &Arc<dyn Model>) -> Result<()> {
     let structure = model.structure();
     let claims = |case: &CaseInfo| {
         let kinds = case.closures.iter().map(|c| c.kind);
         kinds.filter(|kind| *kind == ClosureKind::Claimed).count()
     };
-    let [case] = structure.cases.as_slice() else {
+    let mut cases = structure.cases.iter();
+    let (Some(case), None) = (cases.next(), cases.next()) else {
         return Ok(());
     };
     if claims(case) == 0 {
         return Ok(());
     }
-    let setup = Setup::new(model, CLAIM_RESOLUTION);
+    let setup = Setup::new(model.clone(), CLAIM_RESOLUTION);
     let base = setup.base(None)?;
-    setup.with_problem(&base, |problem| {
-        let kept = problem.borders.iter().filter(|b| b.kind == ClosureKind::Claimed);
-        if kept.count() == claims(case) {
-            return Ok(());
-        }
-        Err(Error::input(
-            "an integral of the block `mean`: this integral is not conserved, for its density must change by a \
-             flux that vanishes at both ends",
-        ))
-    })
+    let problem = setup.problem(&base)?;
+    let kept = problem
+        .borders
+        .iter()
+        .filter(|b| b.kind == ClosureKind::Claimed);
+    if kept.count() == claims(case) {
+        return Ok(());
+    }
+    Err(Error::input(
+        "an integral of the block `mean`: this integral is not conserved, for its density must change by a flux that \
+         vanishes at both ends",
+    ))
 }
 
 /// Relative distances from the defaults at which a base state in closed form is tried.
 const SAMPLES: [f64; 3] = [0.0, 0.0732, -0.0568];
 
 /// A base state in closed form has to solve its balances at any parameters.
-fn check_closed_base(model: &dyn Model) -> Result<()> {
+fn check_closed_base(model: &Arc<dyn Model>) -> Result<()> {
     let structure = model.structure();
     if !structure.base.solved.is_empty() {
         return Ok(());
     }
     for sample in SAMPLES {
-        let mut setup = Setup::new(model, 8);
+        let mut setup = Setup::new(model.clone(), 8);
         let mut shown = Vec::new();
-        for (index, info) in structure.parameters.iter().enumerate() {
+        for (index, (id, info)) in structure.parameters.pairs().enumerate() {
             // Each by its own part, so that nothing cancels.
             let moved = info.default * (1.0 + sample * (1.0 + 0.37 * index as f64).sin());
             if info.choices.is_empty() && moved >= info.lower && moved <= info.upper {
-                setup.parameters.values[index] = moved;
+                setup.parameters.values[id] = moved;
                 shown.push(format!("{} = {moved}", info.name));
             }
         }

@@ -30,11 +30,10 @@ use landau_solver::error::{Error, Result};
 use landau_solver::model::Model;
 use landau_solver::study::Setup;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Runs the command line for the models of a crate.
-pub fn run(models: Vec<Box<dyn Model>>) -> ExitCode {
-    // Parallelism is over points; a matrix belongs to one thread.
-    faer::set_global_parallelism(faer::Par::Seq);
+pub fn run(models: Vec<Arc<dyn Model>>) -> ExitCode {
     interrupt::watch();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
@@ -63,26 +62,31 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
             operator,
             format,
             against,
-        } => library.with_model(&model, |model| match &against {
-            Some(file) => inspect::explain_against(model, file, format),
-            None => inspect::explain(model, operator, format),
-        }),
+        } => {
+            let model = library.model(&model)?;
+            match &against {
+                Some(file) => inspect::explain_against(model.as_ref(), file, format),
+                None => inspect::explain(model.as_ref(), operator, format),
+            }
+        }
         Command::Base {
             model,
             points,
             plot,
             common,
-        } => with_setup(library, &model, &common, |setup| {
+        } => {
+            let setup = &setup(library, &model, &common)?;
             solve::base(setup, points, plot.as_deref(), &common)
-        }),
+        }
         Command::Spectrum {
             model,
             k,
             plot,
             common,
-        } => with_setup(library, &model, &common, |setup| {
+        } => {
+            let setup = &setup(library, &model, &common)?;
             solve::spectrum(setup, k, plot.as_deref(), &common)
-        }),
+        }
         Command::Point {
             model,
             k,
@@ -90,40 +94,45 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
             plot,
             out,
             common,
-        } => with_setup(library, &model, &common, |setup| {
+        } => {
+            let setup = &setup(library, &model, &common)?;
             picture::modes(setup, k, plot.as_deref(), &out, &common)?;
             solve::point(setup, k, order, &common)
-        }),
+        }
         Command::Amplitudes {
             model,
             modes,
             order,
             common,
-        } => with_setup(library, &model, &common, |setup| {
+        } => {
+            let setup = &setup(library, &model, &common)?;
             solve::amplitudes(setup, &modes, order, &common)
-        }),
+        }
         Command::Critical {
             model,
             options,
             common,
-        } => with_setup(library, &model, &common, |setup| {
+        } => {
+            let setup = &setup(library, &model, &common)?;
             solve::critical(setup, &options, &common)
-        }),
+        }
         Command::Sweep {
             model,
             options,
             common,
-        } => with_setup(library, &model, &common, |setup| {
+        } => {
+            let setup = &setup(library, &model, &common)?;
             solve::sweep(setup, &options, &common)
-        }),
+        }
         Command::Merge { options } => cluster::merge(&options),
         Command::Pattern {
             model,
             options,
             common,
-        } => with_setup(library, &model, &common, |setup| {
+        } => {
+            let setup = &setup(library, &model, &common)?;
             pattern::pattern(setup, &options, &common)
-        }),
+        }
         Command::Reproduce { study, out, json } => {
             reproduce::reproduce(library, study.as_deref(), &out, json)
         }
@@ -132,27 +141,23 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
             k,
             order,
             common,
-        } => with_setup(library, &model, &common, |setup| {
+        } => {
+            let setup = &setup(library, &model, &common)?;
             solve::verify(setup, k, order, &common)
-        }),
+        }
     }
 }
 
-fn with_setup<R>(
-    library: &Library,
-    name: &str,
-    common: &Common,
-    action: impl FnOnce(&Setup) -> Result<R>,
-) -> Result<R> {
-    library.with_model(name, |model| {
-        if !(4..=1000).contains(&common.resolution) {
-            return Err(Error::input(format!(
-                "-M {} is out of range: -M accepts 4 to 1000",
-                common.resolution
-            )));
-        }
-        let mut setup = Setup::new(model, common.resolution);
-        setup.set(&common.set)?;
-        action(&setup)
-    })
+/// A model with the parameters and the resolution that are asked for.
+fn setup(library: &Library, name: &str, common: &Common) -> Result<Setup> {
+    let model = library.model(name)?;
+    if !(4..=1000).contains(&common.resolution) {
+        return Err(Error::input(format!(
+            "-M {} is out of range: -M accepts 4 to 1000",
+            common.resolution
+        )));
+    }
+    let mut setup = Setup::new(model, common.resolution);
+    setup.set(&common.set)?;
+    Ok(setup)
 }

@@ -7,6 +7,7 @@ use landau_report::data::plane::{attributes, dataset};
 use landau_report::figure::{pattern_lines, pattern_pair};
 use landau_solver::error::{Error, Result};
 use landau_solver::file::write_whole;
+use landau_solver::model::FieldId;
 use landau_solver::study::{Setup, check_wavenumber};
 use landau_solver::weakly::{Pattern, Window, pattern as expand};
 use serde_json::json;
@@ -26,49 +27,48 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
         }
     }
     let state = setup.base(None)?;
-    setup.with_point(&state, k, selection, |point| {
-        let amplitude = match (options.amplitude, point.amplitude()) {
-            (Some(given), _) if given.is_finite() => given,
-            (Some(given), _) => {
-                return Err(Error::input(format!(
-                    "--amplitude {given}: it accepts a number"
-                )));
-            }
-            (None, Some(equilibrium)) => equilibrium,
-            (None, None) => {
-                return Err(Error::computation(
-                    "there is no equilibrium amplitude at cubic order (a0 and a2 have one sign); \
+    let point = setup.point(&state, k, selection)?;
+    let amplitude = match (options.amplitude, point.amplitude()) {
+        (Some(given), _) if given.is_finite() => given,
+        (Some(given), _) => {
+            return Err(Error::input(format!(
+                "--amplitude {given}: it accepts a number"
+            )));
+        }
+        (None, Some(equilibrium)) => equilibrium,
+        (None, None) => {
+            return Err(Error::computation(
+                "there is no equilibrium amplitude at cubic order (a0 and a2 have one sign); \
                      give one with --amplitude",
-                ));
-            }
-        };
-        let found = expand(point, amplitude, window)?;
-        let attributes = attributes(setup, &state.parameters, k, Some(amplitude));
-        for path in &options.out {
-            if path.extension().is_some_and(|e| e == "svg") {
-                write_whole(path, picture(setup, options, &found)?.as_bytes())?;
-            } else {
-                dataset(setup, &found, attributes.clone()).write(path)?;
-            }
+            ));
         }
-        if common.json {
-            let files: Vec<String> = options
-                .out
-                .iter()
-                .map(|p| p.display().to_string())
-                .collect();
-            say!("{}", json!({"k": k, "amplitude": amplitude, "out": files}));
+    };
+    let found = expand(&point, amplitude, window)?;
+    let attributes = attributes(setup, &state.parameters, k, Some(amplitude));
+    for path in &options.out {
+        if path.extension().is_some_and(|e| e == "svg") {
+            write_whole(path, picture(setup, options, &found)?.as_bytes())?;
         } else {
-            say!(
-                "{} at k = {k}, A = {amplitude:.8}",
-                setup.model.structure().title
-            );
-            for path in &options.out {
-                say!("  {}", path.display());
-            }
+            dataset(setup, &found, attributes.clone()).write(path)?;
         }
-        Ok(())
-    })
+    }
+    if common.json {
+        let files: Vec<String> = options
+            .out
+            .iter()
+            .map(|p| p.display().to_string())
+            .collect();
+        say!("{}", json!({"k": k, "amplitude": amplitude, "out": files}));
+    } else {
+        say!(
+            "{} at k = {k}, A = {amplitude:.8}",
+            setup.model.structure().title
+        );
+        for path in &options.out {
+            say!("  {}", path.display());
+        }
+    }
+    Ok(())
 }
 
 fn window(options: &PatternOptions) -> Result<Window> {
@@ -113,7 +113,7 @@ fn picture(setup: &Setup, options: &PatternOptions, found: &Pattern) -> Result<S
         let drawn = pattern_lines(setup.model.structure(), found);
         return drawn.ok_or_else(|| Error::computation("the pattern has no finite value"));
     }
-    let shade = options.shade.as_deref().map_or(Ok(0), field)?;
+    let shade = options.shade.as_deref().map_or(Ok(FieldId(0)), field)?;
     let arrows = match &options.arrows {
         Some(text) => {
             let (along, across) = text

@@ -21,9 +21,8 @@ pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool
         .as_ref()
         .map(|file| Errata::read(&home.join(file)));
     let errata = errata.transpose()?;
-    let formulas = library.with_model(&study.model, |model| {
-        inspect::formulas(model, errata.as_ref())
-    })?;
+    let model = library.model(&study.model)?;
+    let formulas = inspect::formulas(model.as_ref(), errata.as_ref())?;
     let shop = Workshop {
         library,
         study: &study,

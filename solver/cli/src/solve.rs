@@ -7,6 +7,7 @@ use crate::{cluster, interrupt, picture};
 use landau_report::figure;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{destination, write_whole};
+use landau_solver::model::{FieldId, Table};
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{Quantity, Question};
 use landau_solver::study::minimise::minimise;
@@ -16,7 +17,7 @@ use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::verify::Certificate;
 use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality};
 use landau_solver::words;
-use serde_json::{Map, json};
+use serde_json::{Map, Value, json};
 use std::path::Path;
 
 pub fn base(setup: &Setup, points: usize, plot: Option<&Path>, common: &Common) -> Result<()> {
@@ -29,42 +30,28 @@ pub fn base(setup: &Setup, points: usize, plot: Option<&Path>, common: &Common) 
     picture::drawn(plot, || figure::base(setup, &state))?;
     let structure = setup.model.structure();
     let coordinate = structure.coordinate.clone().unwrap_or_else(|| "y".into());
-    let count = if structure.coordinate.is_some() {
-        points
-    } else {
-        1
+    let places = state.space.evenly(points);
+    let heights: Vec<f64> = places.iter().map(|&place| state.space.y(place)).collect();
+    let states: Vec<Vec<f64>> = places.iter().map(|&place| state.at(place, 0.0)).collect();
+    let profile = |field: FieldId| -> Vec<f64> {
+        let value = |point: &Vec<f64>| structure.base_value(point, field, 0);
+        states.iter().map(value).collect()
     };
-    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); structure.fields.len() + 1];
-    for i in 0..count {
-        let xi = if count == 1 {
-            0.0
-        } else {
-            -1.0 + 2.0 * i as f64 / (count - 1) as f64
-        };
-        let point = state.point(setup.model, xi, 0.0);
-        columns[0].push(point[0]);
-        for field in 0..structure.fields.len() {
-            columns[field + 1].push(point[structure.base_position(field, 0)]);
-        }
-    }
+    let profiles: Table<FieldId, Vec<f64>> = structure.fields.ids().map(profile).collect();
     if common.json {
-        let mut profiles = Map::new();
-        for (field, info) in structure.fields.iter().enumerate() {
-            profiles.insert(
-                info.name.clone(),
-                columns[field + 1]
-                    .iter()
-                    .map(|&v| words::number(v))
-                    .collect(),
-            );
-        }
+        let named = structure.fields.iter().zip(profiles.iter());
+        let named = named.map(|(info, values)| {
+            let values = values.iter().map(|&v| words::number(v)).collect();
+            (info.name.clone(), values)
+        });
+        let profiles: Map<String, Value> = named.collect();
         let object = json!({
             "model": structure.name,
             "parameters": words::parameters(setup, &state.parameters),
             "degree": state.degree,
             "tail": words::number(state.tail()),
             "residual": words::number(state.residual),
-            (coordinate): columns[0],
+            (coordinate): heights,
             "profiles": profiles,
         });
         say!("{object}");
@@ -82,9 +69,10 @@ pub fn base(setup: &Setup, points: usize, plot: Option<&Path>, common: &Common) 
         .map(|n| format!("{n:>16}"))
         .collect();
     say!("{}", header.join(""));
-    for i in 0..count {
-        let row: Vec<String> = columns.iter().map(|c| format!("{:>16.9}", c[i])).collect();
-        say!("{}", row.join(""));
+    for (i, height) in heights.iter().enumerate() {
+        let values = profiles.iter().map(|values| values[i]);
+        let row = std::iter::once(*height).chain(values);
+        say!("{}", row.map(|v| format!("{v:>16.9}")).collect::<String>());
     }
     Ok(())
 }
@@ -128,7 +116,7 @@ pub fn amplitudes(
 }
 
 pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Result<()> {
-    let axis = Axis::named(setup.model, &options.vary)?;
+    let axis = Axis::named(setup.model.as_ref(), &options.vary)?;
     if !(options.from.is_finite() && options.to.is_finite()) || options.from == options.to {
         return Err(Error::input("--from and --to accept two different numbers"));
     }
@@ -168,7 +156,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         Of::C2 => (Quantity::C2, "c2"),
         Of::Resonance => (Quantity::Resonance, "resonance"),
     };
-    let (from, to, k) = (options.from, options.to, options.k.unwrap_or(0.0));
+    let (from, to, k) = (options.from, options.to, options.k);
     let question = Question {
         axis,
         from,
@@ -227,7 +215,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
                 "--over {text}: COUNT is a whole number from 1 to 1000000"
             )));
         }
-        let axis = Axis::named(setup.model, &name)?;
+        let axis = Axis::named(setup.model.as_ref(), &name)?;
         if ranges.iter().any(|r| r.axis == axis) {
             return Err(Error::input(format!(
                 "--over {text}: `{name}` varies already"

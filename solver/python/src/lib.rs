@@ -27,14 +27,12 @@ create_exception!(
 fn raised(error: Error) -> PyErr {
     match error {
         Error::Input(message) => InputError::new_err(message),
-        Error::Computation(message) => ComputationError::new_err(message),
+        error => ComputationError::new_err((error.to_string(), error.kind())),
     }
 }
 
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    // Parallelism is over points; a matrix belongs to one thread.
-    faer::set_global_parallelism(faer::Par::Seq);
     module.add_class::<model::Core>()?;
     module.add("InputError", module.py().get_type::<InputError>())?;
     module.add(

@@ -3,7 +3,7 @@
 use crate::raised;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::text::{self, Section, Typeset};
-use landau_codegen::{Sources, generate, tape};
+use landau_codegen::{Sources, generate};
 use landau_report::library::Library;
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{Model, Structure};
@@ -28,10 +28,8 @@ fn library() -> Library {
 }
 
 fn taped(sources: Sources) -> Result<Core> {
-    let model = tape(&sources)
-        .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
     Ok(Core {
-        model: Arc::new(model),
+        model: Arc::new(landau_report::library::taped(&sources)?),
         sources,
     })
 }
@@ -60,24 +58,16 @@ fn sources_of(model: &dyn Model) -> Sources {
 
 fn open(name: &str) -> Result<Core> {
     let library = library();
-    let position = library
-        .models
-        .iter()
-        .position(|m| m.structure().name == name);
-    if let Some(position) = position {
-        let mut models = library.models;
-        let model: Arc<dyn Model> = Arc::from(models.swap_remove(position));
-        return Ok(Core {
-            sources: sources_of(model.as_ref()),
-            model,
-        });
-    }
+    let built = library.models.iter().any(|m| m.structure().name == name);
     let path = Path::new(name);
-    if name.ends_with(".model") || path.is_file() {
+    if !built && (name.ends_with(".model") || path.is_file()) {
         return taped(library.sources(path)?);
     }
-    // Names what there is.
-    library.with_model(name, |_| Err(Error::input("the model cannot be opened")))
+    let model = library.model(name)?;
+    Ok(Core {
+        sources: sources_of(model.as_ref()),
+        model,
+    })
 }
 
 fn from_text(text: String, laws: BTreeMap<String, String>) -> Result<Core> {

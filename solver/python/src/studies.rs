@@ -25,13 +25,13 @@ use std::path::{Path, PathBuf};
 /// Re and Im of an eigenvalue that a mode is near to.
 type Near = Option<(f64, f64)>;
 
-fn setup<'m>(core: &'m Core, set: &[String], resolution: usize) -> Result<Setup<'m>> {
+fn setup(core: &Core, set: &[String], resolution: usize) -> Result<Setup> {
     if !(4..=1000).contains(&resolution) {
         return Err(Error::input(format!(
             "M = {resolution} is out of range: it accepts 4 to 1000"
         )));
     }
-    let mut setup = Setup::new(core.model.as_ref(), resolution);
+    let mut setup = Setup::new(core.model.clone(), resolution);
     setup.set(set)?;
     Ok(setup)
 }
@@ -50,51 +50,37 @@ fn profiles(setup: &Setup, points: usize) -> Result<Value> {
     }
     let state = setup.base(None)?;
     let structure = setup.model.structure();
-    let count = if structure.coordinate.is_some() {
-        points
-    } else {
-        1
-    };
-    let states: Vec<Vec<f64>> = (0..count)
-        .map(|i| match count {
-            1 => state.point(setup.model, 0.0, 0.0),
-            _ => state.point(setup.model, -1.0 + 2.0 * i as f64 / (count - 1) as f64, 0.0),
-        })
-        .collect();
-    let column = |position: usize| {
-        states
-            .iter()
-            .map(|s| words::number(s[position]))
-            .collect::<Vec<_>>()
-    };
+    let places = state.space.evenly(points);
+    let states: Vec<Vec<f64>> = places.iter().map(|&place| state.at(place, 0.0)).collect();
     let mut fields = Map::new();
-    for (field, info) in structure.fields.iter().enumerate() {
-        fields.insert(
-            info.name.clone(),
-            column(structure.base_position(field, 0)).into(),
-        );
+    for (field, info) in structure.fields.pairs() {
+        let values = states.iter().map(|s| structure.base_value(s, field, 0));
+        fields.insert(info.name.clone(), values.map(words::number).collect());
     }
+    let heights = places
+        .iter()
+        .map(|&place| words::number(state.space.y(place)));
     Ok(json!({
         "model": structure.name,
         "parameters": words::parameters(setup, &state.parameters),
         "degree": state.degree,
         "tail": words::number(state.tail()),
         "residual": words::number(state.residual),
-        "y": column(structure.state().coordinate()),
+        "y": heights.collect::<Vec<_>>(),
         "profiles": fields,
     }))
 }
 
 /// A sweep over axes that are checked.
-fn swept<'s, 'm>(
-    setup: &'s Setup<'m>,
+fn swept(
+    setup: &Setup,
     axes: Vec<(String, Vec<f64>)>,
     k: Option<f64>,
     near: Near,
-) -> Result<Sweep<'s, 'm>> {
+) -> Result<Sweep<'_>> {
     let mut ranges = Vec::new();
     for (name, values) in axes {
-        let axis = Axis::named(setup.model, &name)?;
+        let axis = Axis::named(setup.model.as_ref(), &name)?;
         if values.is_empty() {
             return Err(Error::input(format!("the axis `{name}` has no values")));
         }
@@ -252,7 +238,7 @@ impl Core {
     ) -> PyResult<String> {
         watched(py, |watch| {
             let setup = setup(self, &set, resolution)?;
-            let axis = Axis::named(setup.model, &vary)?;
+            let axis = Axis::named(setup.model.as_ref(), &vary)?;
             let (from, to) = between;
             for value in [from, to] {
                 if axis == Axis::Wavenumber {
@@ -269,7 +255,7 @@ impl Core {
                 from,
                 to,
                 quantity: quantity(&of)?,
-                k: k.unwrap_or(0.0),
+                k,
                 near: near.map(|(re, im)| C64::new(re, im)),
             };
             let found = match minimize {
@@ -375,19 +361,31 @@ impl Core {
                 wavelengths,
             };
             let base = setup.base(None)?;
-            setup.with_point(&base, k, selection(near), |point| {
-                let missing = || {
-                    Error::computation("there is no equilibrium amplitude at cubic order: give one with amplitude")
-                };
-                let amplitude = amplitude.or(point.amplitude()).ok_or_else(missing)?;
-                let found = pattern(point, amplitude, window)?;
-                let fields = found.names.iter().enumerate().map(|(i, name)| {
-                    let value = json!({"base": found.base[i], "linear": found.linear[i], "nonlinear": found.nonlinear[i]});
-                    (name.clone(), value)
+            let point = setup.point(&base, k, selection(near))?;
+            let missing = || {
+                Error::computation(
+                    "there is no equilibrium amplitude at cubic order: give one with amplitude",
+                )
+            };
+            let amplitude = amplitude.or(point.amplitude()).ok_or_else(missing)?;
+            let found = pattern(&point, amplitude, window)?;
+            let fields = found.names.pairs().map(|(field, name)| {
+                let value = json!({
+                    "base": found.base[field],
+                    "linear": found.linear[field],
+                    "nonlinear": found.nonlinear[field],
                 });
-                let fields: Map<String, Value> = fields.collect();
-                Ok(json!({"k": k, "amplitude": amplitude, "x": found.x, "y": found.y, "fields": fields}).to_string())
-            })
+                (name.clone(), value)
+            });
+            let fields: Map<String, Value> = fields.collect();
+            let object = json!({
+                "k": k,
+                "amplitude": amplitude,
+                "x": found.x,
+                "y": found.y,
+                "fields": fields,
+            });
+            Ok(object.to_string())
         })
     }
 }

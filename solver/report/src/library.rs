@@ -4,13 +4,22 @@ use landau_codegen::build::read_sources;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::{Sources, tape};
 use landau_solver::error::{Error, Result};
-use landau_solver::model::{Model, nearest};
+use landau_solver::model::{Model, TapeModel, nearest};
 use std::path::Path;
+use std::sync::Arc;
+
+/// A spec as a model that interprets its kernels.
+///
+/// # Errors
+/// Every mistake of the spec, with its place.
+pub fn taped(sources: &Sources) -> Result<TapeModel> {
+    tape(sources).map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))
+}
 
 /// The models of a crate.
 pub struct Library {
     /// In the order of their names.
-    pub models: Vec<Box<dyn Model>>,
+    pub models: Vec<Arc<dyn Model>>,
 }
 
 impl Library {
@@ -30,25 +39,18 @@ impl Library {
         Ok(sources)
     }
 
-    /// Calls `action` with a built model by name, or with one run from the tape of its `.model` file.
+    /// A built model by name, or one run from the tape of its `.model` file.
     ///
     /// # Errors
-    /// A name that is neither, a spec with mistakes, whatever `action` fails with.
-    pub fn with_model<R>(
-        &self,
-        name: &str,
-        action: impl FnOnce(&dyn Model) -> Result<R>,
-    ) -> Result<R> {
-        let mut built = self.models.iter().map(AsRef::as_ref);
+    /// A name that is neither, a spec with mistakes.
+    pub fn model(&self, name: &str) -> Result<Arc<dyn Model>> {
+        let mut built = self.models.iter();
         if let Some(model) = built.find(|model| model.structure().name == name) {
-            return action(model);
+            return Ok(model.clone());
         }
         let path = Path::new(name);
         if name.ends_with(".model") || path.is_file() {
-            let sources = self.sources(path)?;
-            let model = tape(&sources)
-                .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
-            return action(&model);
+            return Ok(Arc::new(taped(&self.sources(path)?)?));
         }
         let names: Vec<&str> = self
             .models

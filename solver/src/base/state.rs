@@ -1,9 +1,14 @@
 //! A base state: Chebyshev series of the solved fields, closed forms of the others.
 
-use crate::collocation::{Series, Stretch};
 use crate::error::{Error, Result};
-use crate::model::{End, KernelId, Model, PointState, ResidualId, WithRounding, evaluate};
+use crate::model::{
+    CaseId, End, FieldId, KernelId, Model, PointState, ResidualId, SolvedId, Structure, Table,
+    WithRounding, evaluate,
+};
 use crate::parameters::Parameters;
+use crate::space::{Matrices, Place, Series, Space};
+use std::fmt;
+use std::sync::Arc;
 
 /// Places at which a closed base state is checked against its balances.
 const CHECKS: usize = 7;
@@ -61,90 +66,98 @@ fn residual(model: &dyn Model, id: ResidualId, point: &[f64], sizes: &[f64]) -> 
 }
 
 /// X⁰(y), evaluated to any derivative that kernels ask for.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct BaseState {
+    /// What it is a state of.
+    pub model: Arc<dyn Model>,
     /// Values of the parameters, automatic ones determined.
     pub parameters: Parameters,
-    /// Position of the case among those of the structure.
-    pub case: usize,
-    /// y of the lower end.
-    pub lower: f64,
-    /// y of the upper end.
-    pub upper: f64,
+    /// The conditions that the switches select.
+    pub case: CaseId,
+    /// The interval, with the coordinate of the series.
+    pub space: Space,
     /// Degree of the series (0 where the base is in closed form).
     pub degree: usize,
-    /// The coordinate of the series.
-    pub stretch: Stretch,
-    /// Chebyshev coefficients of each solved field, in the order of `solved`; one for a number.
-    pub series: Vec<Series>,
+    /// Of each solved field; of a number its value.
+    pub series: Table<SolvedId, Series>,
     /// Largest residual of the discretised base problem, relative to its terms.
     pub residual: f64,
 }
 
-/// The ends of the interval at these parameters.
-pub(super) fn interval(model: &dyn Model, parameters: &Parameters) -> (f64, f64) {
-    let point = PointState::new(model.structure().state(), 0.0, 0.0, &parameters.values);
-    let ends = evaluate(model, KernelId::Interval, point.values());
-    (ends[0], ends[1])
+impl fmt::Debug for BaseState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = &self.structure().name;
+        write!(f, "base state of {name}, degree {}", self.degree)
+    }
 }
 
-/// Places at which the steepest layer is looked for.
-const LAYER_SAMPLES: usize = 2000;
-/// A layer wider than this part of the half-interval needs no coordinate of its own.
-const WIDE: f64 = 0.5;
+/// The interval at these parameters.
+///
+/// # Errors
+/// One that is empty.
+pub(super) fn space(
+    model: &dyn Model,
+    parameters: &Parameters,
+    matrices: &Arc<Matrices>,
+) -> Result<Space> {
+    let structure = model.structure();
+    if structure.coordinate.is_none() {
+        return Ok(Space::new(None, matrices.clone()));
+    }
+    let point = PointState::new(structure.state(), 0.0, 0.0, &parameters.values);
+    let ends = evaluate(model, KernelId::Interval, point.values());
+    let (lower, upper) = (ends[0], ends[1]);
+    if lower.is_finite() && upper.is_finite() && upper > lower {
+        return Ok(Space::new(Some([lower, upper]), matrices.clone()));
+    }
+    Err(Error::input(format!(
+        "the interval {lower}..{upper} is empty: its upper end must lie above its lower end"
+    )))
+}
 
 impl BaseState {
     /// A base that is given in closed form.
-    pub(super) fn closed(model: &dyn Model, parameters: &Parameters) -> Self {
-        let (lower, upper) = interval(model, parameters);
-        let case = parameters.case(model.structure());
-        let parameters = parameters.clone();
+    pub(super) fn closed(model: &Arc<dyn Model>, parameters: &Parameters, space: Space) -> Self {
         BaseState {
-            parameters,
-            case,
-            lower,
-            upper,
+            model: model.clone(),
+            case: parameters.case(model.structure()),
+            parameters: parameters.clone(),
+            space,
             degree: 0,
-            stretch: Stretch::None,
-            series: Vec::new(),
+            series: Table::default(),
             residual: 0.0,
         }
     }
 
-    /// y of a point ξ in [−1, 1].
-    pub fn y(&self, xi: f64) -> f64 {
-        // Exact at the ends.
-        0.5 * ((1.0 - xi) * self.lower + (1.0 + xi) * self.upper)
+    /// What the kernels are about.
+    pub fn structure(&self) -> &Structure {
+        self.model.structure()
     }
 
-    /// dξ/dy
-    pub fn scale(&self) -> f64 {
-        2.0 / (self.upper - self.lower)
-    }
-
-    /// The point state at ξ; see [`KernelId`] for its layout. `k` enters the amplitude alone.
-    pub fn point(&self, model: &dyn Model, xi: f64, k: f64) -> Vec<f64> {
-        let structure = model.structure();
-        let mut point = PointState::new(structure.state(), self.y(xi), k, &self.parameters.values);
-        let closed = evaluate(model, KernelId::Closed, point.values());
+    /// The point state that kernels read at a place; `k` enters the amplitude alone.
+    pub fn at(&self, place: Place, k: f64) -> Vec<f64> {
+        let structure = self.structure();
+        let (y, values) = (self.space.y(place), &self.parameters.values);
+        let mut point = PointState::new(structure.state(), y, k, values);
+        let closed = evaluate(self.model.as_ref(), KernelId::Closed, point.values());
         point.set_closed(&closed);
-        let eta = self.stretch.eta(xi);
         for (&field, series) in structure.base.solved.iter().zip(&self.series) {
-            let mut scale = 1.0;
-            let derivatives = series.values(eta, structure.base_order);
-            let derivatives = self.stretch.compose(xi, &derivatives);
+            let derivatives = self.space.evaluate(series, place, structure.base_order);
             for (order, value) in derivatives.into_iter().enumerate() {
-                point.set_base(field, order, value * scale);
-                scale *= self.scale();
+                point.set_base(field, order, value);
             }
         }
         point.into_values()
     }
 
     /// The point state at an end.
-    pub fn at_end(&self, model: &dyn Model, end: End) -> Vec<f64> {
-        let xi = if end == End::Lower { -1.0 } else { 1.0 };
-        self.point(model, xi, 0.0)
+    pub fn at_end(&self, end: End) -> Vec<f64> {
+        self.at(self.space.end(end), 0.0)
+    }
+
+    /// A field at a place.
+    pub fn value(&self, field: FieldId, place: Place) -> f64 {
+        self.structure().base_value(&self.at(place, 0.0), field, 0)
     }
 
     /// Size of the last Chebyshev coefficients, relative to the largest, of the worst field.
@@ -166,42 +179,23 @@ impl BaseState {
         self.series.iter().map(tail).fold(0.0, f64::max)
     }
 
-    /// A coordinate that widens the steepest interior layer of a solved profile.
-    pub(super) fn widened(&self) -> Stretch {
-        let mut thinnest = (WIDE, Stretch::None);
-        let places = (1..LAYER_SAMPLES).map(|i| -1.0 + 2.0 * i as f64 / LAYER_SAMPLES as f64);
-        let places: Vec<f64> = places.collect();
-        for series in self.series.iter().filter(|s| s.coefficients().len() > 1) {
-            let values = places.iter().map(|&eta| series.values(eta, 0)[0]);
-            let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
-                (a.min(v), b.max(v))
-            });
-            for &eta in &places {
-                let xi = self.stretch.xi(eta);
-                let derivatives = series.values(eta, 1);
-                let slope = self.stretch.compose(xi, &derivatives)[1].abs();
-                // Chebyshev points resolve a layer at an end by themselves.
-                let width = (most - least) / slope;
-                let seen = width / (1.0 - xi * xi + width).sqrt();
-                if seen < thinnest.0 {
-                    thinnest = (seen, Stretch::Layer { centre: xi, width });
-                }
-            }
-        }
-        thinnest.1
+    /// The space in a coordinate that widens the steepest interior layer of a solved profile.
+    pub(super) fn widened(&self) -> Space {
+        self.space.widened(self.series.iter())
     }
 
     /// A base in closed form has to satisfy the balances, and what is given of it its wall conditions.
     ///
     /// # Errors
     /// Names what is left of the worst of them, and where.
-    pub(super) fn check_closed(&self, model: &dyn Model) -> Result<()> {
-        let structure = model.structure();
+    pub(super) fn check_closed(&self) -> Result<()> {
+        let (model, structure) = (self.model.as_ref(), self.structure());
         let mut worst = Leftover::default();
-        let place = |check: usize| -1.0 + 2.0 * (check as f64 + 0.5) / CHECKS as f64;
+        let place = |check: usize| Place::at((check as f64 + 0.5) / CHECKS as f64);
         let points: Vec<_> = (0..CHECKS)
-            .map(|check| self.point(model, place(check), 0.0))
+            .map(|check| self.at(place(check), 0.0))
             .collect();
+        let y = structure.state().coordinate();
         // What a closed form cancels does not show in its value: each jet is as uncertain as at its largest.
         let sizes: Vec<f64> = structure
             .residual_jets
@@ -215,16 +209,16 @@ impl BaseState {
             for point in &points {
                 let values = residual(model, ResidualId::Balances, point, &sizes);
                 for (name, value) in structure.balances.iter().zip(values) {
-                    worst.add(value, || format!("the balance `{name}`"), point[0]);
+                    worst.add(value, || format!("the balance `{name}`"), point[y]);
                 }
             }
         }
         let checks = &structure.cases[self.case].base_checks;
         for end in End::BOTH.into_iter().filter(|end| checks.contains(end)) {
-            let point = self.at_end(model, end);
+            let point = self.at_end(end);
             let values = residual(model, ResidualId::BaseChecks(self.case), &point, &sizes);
             for (value, _) in values.into_iter().zip(checks).filter(|(_, at)| **at == end) {
-                worst.add(value, || "its own condition".to_owned(), point[0]);
+                worst.add(value, || "its own condition".to_owned(), point[y]);
             }
         }
         if worst.excess <= 1.0 {
@@ -240,19 +234,19 @@ impl BaseState {
     }
 
     /// Fields must stay in the ranges that the spec declares, but for the truncation error.
-    pub(super) fn check_ranges(&self, model: &dyn Model, truncation: f64) -> Result<()> {
-        let structure = model.structure();
-        for step in 0..=64 {
-            let point = self.point(model, -1.0 + step as f64 / 32.0, 0.0);
-            for (field, info) in structure.fields.iter().enumerate() {
-                let value = point[structure.base_position(field, 0)];
+    pub(super) fn check_ranges(&self, truncation: f64) -> Result<()> {
+        let structure = self.structure();
+        for place in self.space.evenly(65) {
+            let point = self.at(place, 0.0);
+            for (field, info) in structure.fields.pairs() {
+                let value = structure.base_value(&point, field, 0);
                 let slack = (1e-9 + 100.0 * truncation) * (1.0 + value.abs());
                 if !(value >= info.lower - slack && value <= info.upper + slack) {
                     return Err(Error::computation(format!(
                         "the base state leaves the range of `{}`: {value:.6e} at {} = {}",
                         info.name,
                         structure.coordinate.as_deref().unwrap_or("y"),
-                        point[0]
+                        self.space.y(place)
                     )));
                 }
             }

@@ -2,9 +2,9 @@
 //! finite one.
 
 use super::scale::Spectrum;
-use crate::dense::Scalar;
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::numerics::dense::Scalar;
 use faer::linalg::solvers::Solve;
 use faer::{Mat, MatRef};
 

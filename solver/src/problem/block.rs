@@ -1,46 +1,55 @@
 //! A matrix kept as blocks diag(coefficient) · D^d: applied as it is, or written out.
 
-use crate::collocation::{Discretisation, GridKind};
-use crate::dense::{Scalar, vectorised};
+use crate::numerics::Applied;
+use crate::numerics::dense::{Scalar, vectorised};
+use crate::space::Derivative;
 use faer::Mat;
-use std::sync::Arc;
 
 /// diag(coefficients) · derivative with its first row and column in the whole.
 pub(super) struct Block<T> {
-    pub row: usize,
-    pub column: usize,
-    pub derivative: Derivative,
-    pub coefficients: Vec<T>,
+    row: usize,
+    column: usize,
+    derivative: Derivative,
+    coefficients: Vec<T>,
 }
 
-/// D^d from the points of a column to those of a row.
-pub(super) enum Derivative {
-    /// No derivative, and the row's points are the column's from this one on.
-    Selection(usize),
-    Dense(Arc<Mat<f64>>),
-}
-
-impl Derivative {
-    pub(super) fn new(
-        discretisation: &Discretisation,
-        from: GridKind,
-        to: GridKind,
-        order: usize,
+impl<T: Scalar> Block<T> {
+    /// The factor of the derivative goes into the coefficients.
+    pub fn new(
+        row: usize,
+        column: usize,
+        derivative: Derivative,
+        mut coefficients: Vec<T>,
     ) -> Self {
-        match from.start_of(to).filter(|_| order == 0) {
-            Some(start) => Derivative::Selection(start),
-            None => Derivative::Dense(discretisation.matrix(from, to, order)),
+        if let Derivative::Dense { factor, .. } = derivative {
+            let scaled = coefficients.iter_mut();
+            scaled.for_each(|c| *c = c.times(factor));
+        }
+        Block {
+            row,
+            column,
+            derivative,
+            coefficients,
         }
     }
 }
 
 /// A square matrix as a sum of blocks.
 pub struct Blocks<T> {
-    pub(super) size: usize,
-    pub(super) blocks: Vec<Block<T>>,
+    size: usize,
+    blocks: Vec<Block<T>>,
 }
 
 impl<T: Scalar> Blocks<T> {
+    pub(super) fn new(size: usize, blocks: Vec<Block<T>>) -> Self {
+        Blocks { size, blocks }
+    }
+
+    /// Rows and columns.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
     /// A, written out.
     pub fn dense(&self) -> Mat<T> {
         let mut matrix = Mat::zeros(self.size, self.size);
@@ -52,9 +61,10 @@ impl<T: Scalar> Blocks<T> {
         });
         matrix
     }
+}
 
-    /// A x
-    pub fn apply(&self, x: &[T]) -> Vec<T> {
+impl<T: Scalar> Applied<T> for Blocks<T> {
+    fn apply(&self, x: &[T]) -> Vec<T> {
         let mut result = vec![T::zero_impl(); self.size];
         self.blocks.iter().for_each(|block| {
             vectorised(
@@ -65,8 +75,7 @@ impl<T: Scalar> Blocks<T> {
         result
     }
 
-    /// Aᴴ y
-    pub fn apply_adjoint(&self, y: &[T]) -> Vec<T> {
+    fn apply_adjoint(&self, y: &[T]) -> Vec<T> {
         let mut result = vec![T::zero_impl(); self.size];
         self.blocks.iter().for_each(|block| {
             vectorised(
@@ -82,12 +91,14 @@ impl<T: Scalar> Block<T> {
     #[inline(always)]
     fn add_to(&self, matrix: &mut Mat<T>) {
         match &self.derivative {
-            Derivative::Selection(start) => {
+            Derivative::Selection { start, .. } => {
                 for (i, c) in self.coefficients.iter().enumerate() {
                     matrix[(self.row + i, self.column + start + i)] += *c;
                 }
             }
-            Derivative::Dense(derivative) => {
+            Derivative::Dense {
+                matrix: derivative, ..
+            } => {
                 for j in 0..derivative.ncols() {
                     let target = &mut matrix.col_as_slice_mut(self.column + j)[self.row..];
                     let source = derivative.col_as_slice(j);
@@ -104,12 +115,14 @@ impl<T: Scalar> Block<T> {
         let x = &x[self.column..];
         let target = result[self.row..].iter_mut().zip(&self.coefficients);
         match &self.derivative {
-            Derivative::Selection(start) => {
+            Derivative::Selection { start, .. } => {
                 target
                     .zip(&x[*start..])
                     .for_each(|((t, c), x)| *t += *c * *x);
             }
-            Derivative::Dense(derivative) => {
+            Derivative::Dense {
+                matrix: derivative, ..
+            } => {
                 let mut derived = vec![T::zero_impl(); self.coefficients.len()];
                 for (j, value) in x[..derivative.ncols()].iter().enumerate() {
                     for (r, d) in derived.iter_mut().zip(derivative.col_as_slice(j)) {
@@ -127,11 +140,13 @@ impl<T: Scalar> Block<T> {
         let weighted = pairs.map(|(c, y)| c.conjugate() * *y);
         let target = &mut result[self.column..];
         match &self.derivative {
-            Derivative::Selection(start) => {
+            Derivative::Selection { start, .. } => {
                 let selected = target[*start..].iter_mut();
                 selected.zip(weighted).for_each(|(t, w)| *t += w);
             }
-            Derivative::Dense(derivative) => {
+            Derivative::Dense {
+                matrix: derivative, ..
+            } => {
                 let weighted: Vec<T> = weighted.collect();
                 for (j, t) in target[..derivative.ncols()].iter_mut().enumerate() {
                     for (w, d) in weighted.iter().zip(derivative.col_as_slice(j)) {

@@ -4,9 +4,9 @@
 //! only if it vanishes for all of them but one, whose eigenvalue is zero.
 
 use super::Problem;
-use super::assemble::with_borders;
-use crate::dense::norm;
+use super::linear::with_borders;
 use crate::model::{C64, ClosureKind};
+use crate::numerics::dense::norm;
 use crate::pencil::Reduced;
 
 /// What counts as zero, relative to the terms.
@@ -14,7 +14,7 @@ const TOLERANCE: f64 = 1e-6;
 /// Eigenvectors that are looked at: the slow ones, which are resolved.
 const SLOW: usize = 6;
 
-impl Problem<'_> {
+impl Problem {
     /// Drops the claimed closures that the problem does not bear out.
     pub(super) fn recognise_claims(&mut self) {
         let is_claim = |position: &usize| self.borders[*position].kind == ClosureKind::Claimed;
@@ -27,7 +27,7 @@ impl Problem<'_> {
             .iter()
             .filter(|b| b.kind != ClosureKind::Claimed);
         let known: Vec<_> = known.cloned().collect();
-        let slow = Reduced::<f64>::new(with_borders(self.pencil(0.0), &known))
+        let slow = Reduced::<f64>::new(with_borders(self.direct.pencil(0.0), &known))
             .and_then(|pencil| pencil.eigenvectors());
         let Ok((spectrum, mut modes)) = slow else {
             return self.borders.retain(|b| b.kind != ClosureKind::Claimed);

@@ -5,10 +5,13 @@
 //! rows of the fields.
 
 use crate::base::BaseState;
-use crate::collocation::{Block, Discretisation, Grid, GridKind, Layout, clenshaw_curtis};
 use crate::error::{Error, Result};
 use crate::model::layout::{ClosureWeights, read_closure, read_terms};
-use crate::model::{ClosureInfo, ClosureKind, Jet, KernelId, Model, evaluate};
+use crate::model::{
+    BalanceId, ClosureInfo, ClosureKind, FieldId, Id, Jet, KernelId, Table, evaluate,
+};
+use crate::space::{Derivative, Layout, Place, Space};
+use std::ops::Range;
 
 /// One border: a row that closes the problem, and the column of its multiplier.
 #[derive(Clone, Debug)]
@@ -20,7 +23,7 @@ pub struct Border {
     /// What is closed, in words: `conserved n`, `gauge p`, `unknown G`.
     pub name: String,
     /// The gauge or the unknown number.
-    pub field: Option<usize>,
+    pub field: Option<FieldId>,
     /// Coefficients of the unknowns.
     pub row: Vec<f64>,
     /// Entries in the collocated equations, brought to the size of these: `unit` times the weights.
@@ -31,9 +34,9 @@ pub struct Border {
 
 impl Border {
     /// Brings the column to the size of the equations that it enters, `sizes` being theirs.
-    pub fn balance(&mut self, layout: &Layout, sizes: &[f64]) {
-        let touched = layout.rows.iter().zip(sizes).filter(|(block, _)| {
-            let own = &self.column[block.offset..][..block.len];
+    pub fn balance(&mut self, layout: &Layout<BalanceId, FieldId>, sizes: &Table<BalanceId, f64>) {
+        let touched = layout.rows.iter().zip(sizes.iter()).filter(|(block, _)| {
+            let own = block.of(&self.column);
             own.iter().any(|c| *c != 0.0)
         });
         let weights = self.column.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
@@ -47,72 +50,65 @@ impl Border {
 
 /// What closes a case, with its weights at any place.
 struct Closures<'a> {
-    model: &'a dyn Model,
     base: &'a BaseState,
-    discretisation: &'a Discretisation,
+    space: &'a Space,
 }
 
 /// The borders of the direct problem.
-pub fn direct(
-    model: &dyn Model,
-    base: &BaseState,
-    layout: &Layout,
-    discretisation: &Discretisation,
-) -> Vec<Border> {
-    let closures = Closures {
-        model,
-        base,
-        discretisation,
-    };
+pub fn direct(base: &BaseState, space: &Space, layout: &Layout<BalanceId, FieldId>) -> Vec<Border> {
+    let closures = Closures { base, space };
     let infos = closures.infos().iter().enumerate();
     let border = |(index, info): (usize, &ClosureInfo)| {
-        let jets: Vec<Jet> = info.density.clone();
-        let row = closures.integral(layout, &jets, |xi| closures.at(index, xi).density);
+        let row = closures.integral(layout, &info.density, |place| {
+            closures.at(index, place).density
+        });
         let column = match info.kind {
             ClosureKind::Unknown => closures.unknown_column(layout, info.field),
-            _ => closures.column(layout, &info.column, |xi| closures.at(index, xi).column),
+            _ => closures.column(layout, &info.column, |place| {
+                closures.at(index, place).column
+            }),
         };
         closures.border(index, info, row, column)
     };
     infos.map(border).collect()
 }
 
-/// The borders of the adjoint problem, whose columns are balances and whose rows are fields, for the closures
-/// that the direct problem has kept.
+/// The borders of the adjoint problem for the closures that the direct problem has kept.
 ///
 /// # Errors
 /// An integral of a derivative, which has no density.
 pub fn adjoint(
-    model: &dyn Model,
     base: &BaseState,
-    layout: &Layout,
-    discretisation: &Discretisation,
+    space: &Space,
+    layout: &Layout<FieldId, BalanceId>,
     kept: &[usize],
 ) -> Result<Vec<Border>> {
-    let closures = Closures {
-        model,
-        base,
-        discretisation,
-    };
+    let closures = Closures { base, space };
     let infos = closures.infos().iter().enumerate();
     let infos = infos.filter(|(index, _)| kept.contains(index));
+    let values = |balances: &[BalanceId]| -> Vec<Jet<BalanceId>> {
+        balances
+            .iter()
+            .map(|&balance| Jet::value(balance))
+            .collect()
+    };
     let border = |(index, info): (usize, &ClosureInfo)| {
         if info.density.iter().any(|jet| jet.y > 0) {
             return Err(Error::computation(
                 "the adjoint problem at k = 0 has no closure: an integral condition holds a derivative",
             ));
         }
-        let fields: Vec<usize> = info.density.iter().map(|j| usize::from(j.field)).collect();
-        let column = closures.column(layout, &fields, |xi| closures.at(index, xi).density);
+        let fields: Vec<FieldId> = info.density.iter().map(|jet| jet.of).collect();
+        let column = closures.column(layout, &fields, |place| closures.at(index, place).density);
         let row = match info.kind {
             ClosureKind::Unknown => {
-                let balances: Vec<usize> = (0..layout.columns.len()).collect();
-                closures.integral(layout, &values(&balances), |xi| {
-                    closures.unknown_weights(info.field, xi)
+                let balances: Vec<BalanceId> = layout.columns.ids().collect();
+                closures.integral(layout, &values(&balances), |place| {
+                    closures.unknown_weights(info.field, place).to_vec()
                 })
             }
-            _ => closures.integral(layout, &values(&info.column), |xi| {
-                closures.at(index, xi).column
+            _ => closures.integral(layout, &values(&info.column), |place| {
+                closures.at(index, place).column
             }),
         };
         Ok(closures.border(index, info, row, column))
@@ -120,13 +116,9 @@ pub fn adjoint(
     infos.map(border).collect()
 }
 
-fn values(columns: &[usize]) -> Vec<Jet> {
-    columns.iter().map(|&c| Jet::value(c)).collect()
-}
-
 impl Closures<'_> {
     fn infos(&self) -> &[ClosureInfo] {
-        &self.model.structure().cases[self.base.case].closures
+        &self.base.structure().cases[self.base.case].closures
     }
 
     /// The border of a closure before it is balanced against the equations.
@@ -143,15 +135,11 @@ impl Closures<'_> {
     }
 
     fn name(&self, info: &ClosureInfo) -> String {
-        let fields = &self.model.structure().fields;
-        let name = |field: usize| fields[field].name.as_str();
+        let fields = &self.base.structure().fields;
+        let name = |field: FieldId| fields[field].name.as_str();
         let named: Vec<&str> = match info.field {
             Some(field) => vec![name(field)],
-            None => info
-                .density
-                .iter()
-                .map(|j| name(usize::from(j.field)))
-                .collect(),
+            None => info.density.iter().map(|jet| name(jet.of)).collect(),
         };
         let kind = match info.kind {
             ClosureKind::Conserved | ClosureKind::Claimed => "conserved",
@@ -162,45 +150,37 @@ impl Closures<'_> {
         format!("{kind} {}", named.join(" + "))
     }
 
-    /// The weights of one closure at ξ.
-    fn at(&self, index: usize, xi: f64) -> ClosureWeights<f64> {
+    /// The weights of one closure at a place.
+    fn at(&self, index: usize, place: Place) -> ClosureWeights<f64> {
         let kernel = KernelId::Closures(self.base.case);
-        let all = evaluate(self.model, kernel, &self.base.point(self.model, xi, 0.0));
+        let all = evaluate(self.base.model.as_ref(), kernel, &self.base.at(place, 0.0));
         read_closure(self.infos(), index, &all)
     }
 
     /// Σ ∫ weight · jet dy as a row over the unknowns, by spectral quadrature.
-    fn integral(
+    fn integral<Row: Id, Column: Id>(
         &self,
-        layout: &Layout,
-        jets: &[Jet],
-        weights: impl Fn(f64) -> Vec<f64>,
+        layout: &Layout<Row, Column>,
+        jets: &[Jet<Column>],
+        weights: impl Fn(Place) -> Vec<f64>,
     ) -> Vec<f64> {
-        let point = self.model.structure().coordinate.is_none();
-        let (half, scale) = if point {
-            (0.5, 1.0)
-        } else {
-            (1.0 / self.base.scale(), self.base.scale())
-        };
         let longest = layout.columns.iter().map(|b| b.len).max().unwrap_or(1);
-        let quadrature = match point {
-            true => GridKind::Point,
-            false => GridKind::Lobatto(2 * longest + 1),
-        };
-        let nodes = Grid::new(quadrature).nodes;
+        let quadrature = self.space.quadrature(2 * longest + 1);
+        let derivatives: Vec<Option<(Range<usize>, Derivative)>> = jets
+            .iter()
+            .map(|jet| {
+                let (block, order) = (layout.columns.find(jet.of)?, usize::from(jet.y));
+                let derivative = self
+                    .space
+                    .derivative(block.points, quadrature.points, order);
+                Some((block.range(), derivative))
+            })
+            .collect();
         let mut row = vec![0.0; layout.size];
-        for ((q, &xi), quadrature_weight) in
-            nodes.iter().enumerate().zip(clenshaw_curtis(nodes.len()))
-        {
-            for (jet, weight) in jets.iter().zip(weights(xi)) {
-                let Some(block) = layout.columns.get(usize::from(jet.field)) else {
-                    continue;
-                };
-                let order = usize::from(jet.y);
-                let matrix = self.discretisation.matrix(block.grid, quadrature, order);
-                let factor = quadrature_weight * half * weight * scale.powi(order as i32);
-                for j in 0..block.len {
-                    row[block.offset + j] += factor * matrix[(q, j)];
+        for (q, &(place, measure)) in quadrature.nodes.iter().enumerate() {
+            for (derivative, weight) in derivatives.iter().zip(weights(place)) {
+                if let Some((range, derivative)) = derivative {
+                    derivative.add_row(q, measure * weight, &mut row[range.clone()]);
                 }
             }
         }
@@ -208,51 +188,51 @@ impl Closures<'_> {
     }
 
     /// Weights at the points of the rows that they belong to.
-    fn column(
+    fn column<Row: Id, Column: Id>(
         &self,
-        layout: &Layout,
-        rows: &[usize],
-        weights: impl Fn(f64) -> Vec<f64>,
+        layout: &Layout<Row, Column>,
+        rows: &[Row],
+        weights: impl Fn(Place) -> Vec<f64>,
     ) -> Vec<f64> {
         let mut column = vec![0.0; layout.size];
-        for (offset, &row) in rows.iter().enumerate() {
-            let Some(block) = layout.rows.get(row) else {
+        for (position, &row) in rows.iter().enumerate() {
+            let Some(block) = layout.rows.find(row) else {
                 continue;
             };
-            for_points(block, |i, xi| column[i] += weights(xi)[offset]);
+            let places = self.space.places(block.points);
+            for (entry, place) in column[block.range()].iter_mut().zip(places) {
+                *entry += weights(place)[position];
+            }
         }
         column
     }
 
     /// An unknown number enters the balances with its own coefficients: −L in its column.
-    fn unknown_column(&self, layout: &Layout, field: Option<usize>) -> Vec<f64> {
+    fn unknown_column(
+        &self,
+        layout: &Layout<BalanceId, FieldId>,
+        field: Option<FieldId>,
+    ) -> Vec<f64> {
         let mut column = vec![0.0; layout.size];
-        for (balance, block) in layout.rows.iter().enumerate() {
-            for_points(block, |i, xi| {
-                column[i] += self.unknown_weights(field, xi)[balance];
-            });
+        for (balance, block) in layout.rows.pairs() {
+            let places = self.space.places(block.points);
+            for (entry, place) in column[block.range()].iter_mut().zip(places) {
+                *entry += self.unknown_weights(field, place)[balance];
+            }
         }
         column
     }
 
     /// −L of an unknown number, balance by balance.
-    fn unknown_weights(&self, field: Option<usize>, xi: f64) -> Vec<f64> {
-        let structure = self.model.structure();
-        let point = self.base.point(self.model, xi, 0.0);
-        let coefficients = evaluate(self.model, KernelId::Linear, &point);
-        let mut weights = vec![0.0; structure.balances.len()];
+    fn unknown_weights(&self, field: Option<FieldId>, place: Place) -> Table<BalanceId, f64> {
+        let (model, structure) = (self.base.model.as_ref(), self.base.structure());
+        let coefficients = evaluate(model, KernelId::Linear, &self.base.at(place, 0.0));
+        let mut weights = structure.balances.map(|_| 0.0);
         for (term, coefficient) in read_terms(&structure.linear, &coefficients) {
-            if term.jet.t == 0 && Some(usize::from(term.jet.field)) == field {
+            if term.jet.t == 0 && Some(term.jet.of) == field {
                 weights[term.row] -= coefficient;
             }
         }
         weights
-    }
-}
-
-/// Calls `action` with the position and ξ of every point of a block.
-fn for_points(block: &Block, mut action: impl FnMut(usize, f64)) {
-    for (i, &xi) in Grid::new(block.grid).nodes.iter().enumerate() {
-        action(block.offset + i, xi);
     }
 }

@@ -2,9 +2,10 @@
 //! wave have: it drives a mean flow).
 
 use super::{Blocks, Problem};
-use crate::collocation::Block;
-use crate::dense::{Factorised, Scalar, norm, scaled};
-use crate::model::C64;
+use crate::model::{C64, Id, Table};
+use crate::numerics::Applied;
+use crate::numerics::dense::{Factorised, Scalar, norm, scaled};
+use crate::space::Block;
 use faer::Mat;
 
 /// Powers of the inverse by which a distance from singularity is estimated.
@@ -16,7 +17,7 @@ pub struct EvenPart {
     columns: Vec<usize>,
 }
 
-impl Problem<'_> {
+impl Problem {
     /// The even part of the problem at k = 0, where there is the symmetry.
     pub fn even_part(&self) -> Option<EvenPart> {
         let parity = self.structure().parity.as_ref()?;
@@ -25,7 +26,7 @@ impl Problem<'_> {
         let mut columns = unknowns.clone();
         let mut rows = positions(&parity.rows, &layout.rows, false);
         for (index, wall) in self.direct.walls.iter().enumerate() {
-            if self.direct.wall_turn(wall) == 0 {
+            if !self.direct.wall_turn(wall).is_odd() {
                 rows.push(layout.walls + index);
             }
         }
@@ -41,14 +42,13 @@ impl Problem<'_> {
 }
 
 /// Positions of the odd, or of the even, among blocks.
-fn positions(odd: &[bool], blocks: &[Block], which: bool) -> Vec<usize> {
-    let blocks = odd.iter().zip(blocks).filter(|(odd, _)| **odd == which);
-    blocks
-        .flat_map(|(_, b)| b.offset..b.offset + b.len)
-        .collect()
+fn positions<I: Id>(odd: &Table<I, bool>, blocks: &Table<I, Block>, which: bool) -> Vec<usize> {
+    let blocks = odd.iter().zip(blocks.iter());
+    let chosen = blocks.filter(|(odd, _)| **odd == which);
+    chosen.flat_map(|(_, block)| block.range()).collect()
 }
 
-impl Problem<'_> {
+impl Problem {
     /// Unknowns that change sign in the mirror, and equations that do.
     pub fn odd_positions(&self) -> (Vec<usize>, Vec<usize>) {
         let Some(parity) = &self.structure().parity else {
@@ -58,7 +58,7 @@ impl Problem<'_> {
         let unknowns = positions(&parity.fields, &layout.columns, true);
         let mut equations = positions(&parity.rows, &layout.rows, true);
         let walls = self.direct.walls.iter().enumerate();
-        let walls = walls.filter(|(_, wall)| self.direct.wall_turn(wall) == 1);
+        let walls = walls.filter(|(_, wall)| self.direct.wall_turn(wall).is_odd());
         equations.extend(walls.map(|(index, _)| layout.walls + index));
         (unknowns, equations)
     }
@@ -115,7 +115,7 @@ impl<T: Scalar> Solver<T> {
     /// in a hundred.
     pub fn distance(&self, mass: &Blocks<T>) -> f64 {
         let entry = |i: usize| T::from_complex(C64::new(1.0 + 0.37 * ((i * i) as f64).sin(), 0.0));
-        let mut x: Vec<T> = (0..mass.size).map(entry).collect();
+        let mut x: Vec<T> = (0..mass.size()).map(entry).collect();
         let mut sizes = Vec::with_capacity(POWERS);
         for _ in 0..POWERS {
             let size = norm(&x);
@@ -127,7 +127,7 @@ impl<T: Scalar> Solver<T> {
             let mut right = mass.apply(&scaled(&x, 1.0 / size));
             right.resize(self.size, T::zero_impl());
             match self.solve(&right) {
-                Some(next) => x = next[..mass.size].to_vec(),
+                Some(next) => x = next[..mass.size()].to_vec(),
                 None => return 0.0,
             }
         }

@@ -4,136 +4,132 @@
 //! differentiation matrices. Where the model has the mirror symmetry x → −x, unknowns are kept in
 //! the basis in which every matrix is real (odd fields divided by i).
 
-mod assemble;
+mod basis;
 mod block;
 mod claim;
 mod closure;
 mod conditions;
+mod linear;
 mod mirror;
 
-pub use assemble::Combination;
+pub use basis::{Profile, Turn, Turned};
 pub use block::Blocks;
 pub use closure::Border;
-pub use conditions::WallRow;
+pub use linear::{Adjoint, Combination, Direct, LinearProblem, WallRow, symbol};
 pub use mirror::Solver;
 
 use crate::base::BaseState;
-use crate::collocation::{Discretisation, Grid, GridKind, Layout, clenshaw_curtis};
 use crate::error::{Error, Result};
 use crate::model::layout::read_measure;
-use crate::model::{C64, Jet, KernelId, Measure, Model, OffsetsInfo, Structure, evaluate};
+use crate::model::{
+    BalanceId, C64, FieldId, Id, Jet, KernelId, Measure, Model, Structure, Table, TermInfo,
+    evaluate,
+};
+use crate::numerics::dense::Scalar;
+use crate::space::{Layout, Place, Points, Space};
 use faer::Mat;
-use std::sync::OnceLock;
-
-/// Direct or adjoint linear problem: terms with coefficients at their rows' points.
-pub struct LinearProblem {
-    /// Where unknowns and equations stand.
-    pub layout: Layout,
-    /// Row, jet (field = column) and coefficient at each point of the row.
-    terms: Vec<(usize, Jet, Vec<f64>)>,
-    /// The boundary conditions.
-    pub walls: Vec<WallRow>,
-    /// Quarter turns of columns and rows that make matrices real; zeros without the symmetry.
-    column_turns: Vec<usize>,
-    row_turns: Vec<usize>,
-}
+use linear::{CollocatedTerm, bordered_by, with_borders};
+use std::sync::{Arc, OnceLock};
 
 /// Everything about one base state that does not depend on the wavenumber.
-pub struct Problem<'m> {
-    /// The kernels.
-    pub model: &'m dyn Model,
+pub struct Problem {
     /// What the perturbation is a perturbation of.
-    pub base: &'m BaseState,
-    /// M; 0 without a cross-stream coordinate.
-    pub resolution: usize,
-    /// Differentiation matrices.
-    pub discretisation: &'m Discretisation,
+    pub base: Arc<BaseState>,
+    /// M; nothing without a cross-stream coordinate.
+    pub resolution: Option<usize>,
     /// L, M0 and the boundary conditions.
-    pub direct: LinearProblem,
+    pub direct: Direct,
     /// The separately discretised adjoint, made when first asked for.
-    adjoint: OnceLock<Result<LinearProblem>>,
+    adjoint: OnceLock<Result<Adjoint>>,
     /// Bordering of the direct problem at k = 0.
     pub borders: Vec<Border>,
-    /// Coefficients of N2, N3 at the points of each row: `[row][point][coefficient]`.
-    pub nonlinear: Vec<Vec<Vec<f64>>>,
+    /// Coefficients of N2, N3 at the points of each row: `[row][point][coefficient]`; shared by rows of the same points.
+    pub nonlinear: Table<BalanceId, Arc<Vec<Vec<f64>>>>,
     /// Quadratic form of the normalisation, by weighted field: Dᵀ diag(weights) D on its unknowns.
     pub gram: Vec<Mat<f64>>,
 }
 
-/// Point states at the nodes of a grid, computed once a grid.
-struct Points<'m> {
-    model: &'m dyn Model,
-    base: &'m BaseState,
-    known: Vec<(GridKind, Vec<Vec<f64>>)>,
+/// Point states at the points of a family, computed once a family.
+struct States<'b> {
+    base: &'b BaseState,
+    space: &'b Space,
+    known: Vec<(Points, Vec<Vec<f64>>)>,
 }
 
-impl Points<'_> {
-    fn at(&mut self, grid: GridKind) -> &[Vec<f64>] {
-        let position = match self.known.iter().position(|(kind, _)| *kind == grid) {
-            Some(position) => position,
-            None => {
-                let nodes = Grid::new(grid).nodes;
-                let states = nodes
-                    .iter()
-                    .map(|&xi| self.base.point(self.model, xi, 0.0))
-                    .collect();
-                self.known.push((grid, states));
-                self.known.len() - 1
-            }
-        };
+impl<'b> States<'b> {
+    fn new(base: &'b BaseState, space: &'b Space) -> Self {
+        States {
+            base,
+            space,
+            known: Vec::new(),
+        }
+    }
+
+    fn at(&mut self, points: Points) -> &[Vec<f64>] {
+        let known = self.known.iter().position(|(other, _)| *other == points);
+        let position = known.unwrap_or_else(|| {
+            let places = self.space.places(points).into_iter();
+            let states = places.map(|place| self.base.at(place, 0.0)).collect();
+            self.known.push((points, states));
+            self.known.len() - 1
+        });
         &self.known[position].1
+    }
+
+    /// A kernel at all points of a family.
+    fn run(&mut self, kernel: KernelId, points: Points) -> Vec<Vec<f64>> {
+        let model = self.base.model.clone();
+        let states = self.at(points).iter();
+        states
+            .map(|p| evaluate(model.as_ref(), kernel, p))
+            .collect()
     }
 }
 
-impl<'m> Problem<'m> {
-    /// Collocates the operators around `base` with M = `resolution`.
+impl Problem {
+    /// Collocates the operators around `base` with M = `resolution`, where there is a cross-stream coordinate.
     ///
     /// # Errors
     /// A coefficient that is not finite at some point.
-    pub fn new(
-        model: &'m dyn Model,
-        base: &'m BaseState,
-        discretisation: &'m Discretisation,
-        resolution: usize,
-    ) -> Result<Self> {
-        let mut points = Points {
-            model,
-            base,
-            known: Vec::new(),
+    pub fn new(base: &Arc<BaseState>, resolution: Option<usize>) -> Result<Self> {
+        let (space, structure) = (base.space.plain(), base.structure());
+        let resolution = resolution.filter(|_| !space.is_point());
+        let mut states = States::new(base, &space);
+        let layout = Layout::staggered(&structure.offsets, resolution)?;
+        let (column_turns, row_turns) = turns(structure);
+        let direct = LinearProblem {
+            walls: conditions::direct(base),
+            terms: terms(
+                &mut states,
+                &layout,
+                &structure.linear,
+                KernelId::Linear,
+                |row| structure.balances[row].clone(),
+            )?,
+            column_turns,
+            row_turns,
+            space: space.clone(),
+            layout,
         };
-        let direct = Self::direct(&mut points, resolution)?;
-        let borders = closure::direct(model, base, &direct.layout, discretisation);
-        let mut nonlinear: Vec<Vec<Vec<f64>>> = Vec::new();
-        for (row, block) in direct.layout.rows.iter().enumerate() {
-            let twin = direct.layout.rows[..row]
-                .iter()
-                .position(|b| b.grid == block.grid);
-            nonlinear.push(match twin {
-                Some(twin) => nonlinear[twin].clone(),
-                None => {
-                    let states = points.at(block.grid).iter();
-                    states
-                        .map(|p| evaluate(model, KernelId::Nonlinear, p))
-                        .collect()
-                }
-            });
+        let borders = closure::direct(base, &space, &direct.layout);
+        let mut nonlinear = direct.layout.rows.map(|_| Arc::default());
+        for (points, rows) in direct.layout.groups() {
+            let coefficients = Arc::new(states.run(KernelId::Nonlinear, points));
+            rows.iter()
+                .for_each(|&row| nonlinear[row] = coefficients.clone());
         }
-        let gram = gram(model, base, &direct.layout, discretisation, resolution);
-        let adjoint = OnceLock::new();
         let mut problem = Problem {
-            model,
-            base,
+            gram: gram(base, &space, &direct.layout, resolution),
+            base: base.clone(),
             resolution,
-            discretisation,
             direct,
-            adjoint,
+            adjoint: OnceLock::new(),
             borders,
             nonlinear,
-            gram,
         };
-        let sizes: Vec<f64> = (0..problem.direct.layout.rows.len())
-            .map(|row| median(problem.term_sizes(row, 0.0, |jet| jet.t == 0)))
-            .collect();
+        let ids = problem.direct.layout.rows.ids();
+        let size = |row| median(problem.direct.term_sizes(row, 0.0, |jet| jet.t == 0));
+        let sizes: Table<BalanceId, f64> = ids.map(size).collect();
         for border in &mut problem.borders {
             border.balance(&problem.direct.layout, &sizes);
         }
@@ -145,53 +141,48 @@ impl<'m> Problem<'m> {
     ///
     /// # Errors
     /// Why the model has no adjoint boundary conditions.
-    pub fn adjoint(&self) -> Result<&LinearProblem> {
-        let made = self.adjoint.get_or_init(|| {
-            let mut points = Points {
-                model: self.model,
-                base: self.base,
-                known: Vec::new(),
-            };
-            Self::adjoint_problem(&mut points, self.resolution)
-        });
+    pub fn adjoint(&self) -> Result<&Adjoint> {
+        let made = self.adjoint.get_or_init(|| self.discretised_adjoint());
         made.as_ref().map_err(Clone::clone)
     }
 
-    fn direct(points: &mut Points, resolution: usize) -> Result<LinearProblem> {
-        let (model, base) = (points.model, points.base);
-        let structure = model.structure();
-        let walls = conditions::direct(model, base);
-        let layout = layout(structure, &structure.offsets, resolution)?;
-        let (column_turns, row_turns) = turns(structure);
-        let terms = terms(points, &layout, KernelId::Linear)?;
-        Ok(LinearProblem::new(
-            layout,
-            terms,
+    fn discretised_adjoint(&self) -> Result<Adjoint> {
+        let structure = self.structure();
+        let space = self.space().clone();
+        let walls = conditions::adjoint(&self.base).map_err(Error::Computation)?;
+        let layout = Layout::staggered(&structure.adjoint_offsets, self.resolution)?;
+        let (row_turns, column_turns) = turns(structure);
+        let mut states = States::new(&self.base, &space);
+        let name = |row: FieldId| format!("{}†", structure.fields[row].name);
+        Ok(LinearProblem {
+            terms: terms(
+                &mut states,
+                &layout,
+                &structure.adjoint,
+                KernelId::Adjoint,
+                name,
+            )?,
             walls,
             column_turns,
             row_turns,
-        ))
+            layout,
+            space,
+        })
     }
 
-    fn adjoint_problem(points: &mut Points, resolution: usize) -> Result<LinearProblem> {
-        let (model, base) = (points.model, points.base);
-        let structure = model.structure();
-        let walls = conditions::adjoint(model, base).map_err(Error::Computation)?;
-        let layout = layout(structure, &structure.adjoint_offsets, resolution)?;
-        let (column_turns, row_turns) = turns(structure);
-        let terms = terms(points, &layout, KernelId::Adjoint)?;
-        Ok(LinearProblem::new(
-            layout,
-            terms,
-            walls,
-            row_turns,
-            column_turns,
-        ))
+    /// The kernels.
+    pub fn model(&self) -> &dyn Model {
+        self.base.model.as_ref()
     }
 
     /// What the kernels are about.
     pub fn structure(&self) -> &Structure {
-        self.model.structure()
+        self.base.structure()
+    }
+
+    /// Where it is collocated.
+    pub fn space(&self) -> &Space {
+        &self.direct.space
     }
 
     /// Whether matrices are real wherever the shift is.
@@ -199,73 +190,50 @@ impl<'m> Problem<'m> {
         self.structure().parity.is_some()
     }
 
-    /// Physical values of the unknowns from those in the solver's basis.
-    pub fn physical<T: crate::dense::Scalar>(&self, x: &[T]) -> Vec<C64> {
-        let mut values = vec![C64::new(0.0, 0.0); self.direct.layout.size];
-        for (block, &turn) in self
-            .direct
-            .layout
-            .columns
-            .iter()
-            .zip(&self.direct.column_turns)
-        {
-            for i in block.offset..block.offset + block.len {
-                values[i] = x[i].complex() * quarter_turn(turn);
-            }
-        }
-        values
+    /// A quadrature that is exact for products of two profiles, with the point states at its places.
+    pub fn quadrature(&self) -> crate::space::Quadrature {
+        let m = self.resolution.unwrap_or(0);
+        self.space().quadrature(4 * m + 1)
     }
 
-    /// Physical values in the solver's basis.
-    pub fn solver_basis(&self, values: &[C64]) -> Vec<C64> {
-        let mut turned = values.to_vec();
-        let turns = self.direct.column_turns.iter();
-        for (block, &turn) in self.direct.layout.columns.iter().zip(turns) {
-            for value in &mut turned[block.offset..block.offset + block.len] {
-                *value *= quarter_turn(4 - turn);
-            }
+    /// σ M0 − L, the boundary conditions being rows of L without mass; bordered at k = 0.
+    pub fn shifted<T: Scalar>(&self, k: f64, shift: C64) -> Mat<T> {
+        let matrix = self.direct.matrix(k, Combination::shifted(shift));
+        if k == 0.0 {
+            bordered_by(matrix, &self.borders)
+        } else {
+            matrix
         }
-        turned
+    }
+
+    /// L and M0 at k = 0 with the borders of the closures.
+    pub fn bordered_pencil<T: Scalar>(&self) -> (Mat<T>, Mat<T>) {
+        with_borders(self.direct.pencil::<T>(0.0), &self.borders)
+    }
+
+    /// The same for the adjoint problem.
+    ///
+    /// # Errors
+    /// A model without adjoint boundary conditions, or whose closures have no adjoint.
+    pub fn bordered_adjoint_pencil<T: Scalar>(&self) -> Result<(Mat<T>, Mat<T>)> {
+        let adjoint = self.adjoint()?;
+        let kept: Vec<usize> = self.borders.iter().map(|b| b.closure).collect();
+        let borders = closure::adjoint(&self.base, &adjoint.space, &adjoint.layout, &kept)?;
+        Ok(with_borders(adjoint.pencil(0.0), &borders))
     }
 
     /// The rate at which the balance of slowest terms changes its field: Σ |coefficient| |k|^a (2/h)^d over the
     /// mass, a median over the points.
     pub fn rate(&self, k: f64) -> f64 {
-        let rates = (0..self.direct.layout.rows.len()).map(|row| {
+        let rates = self.direct.layout.rows.ids().map(|row| {
             // Terms of the fields whose time derivative the balance holds: others have units of their own.
-            let own = |jet: Jet| {
-                let mut mass = self.direct.terms.iter().filter(|(r, ..)| *r == row);
-                mass.any(|(_, other, _)| other.t > 0 && other.field == jet.field)
-            };
-            let terms = self.term_sizes(row, k, |jet| jet.t == 0 && own(jet));
-            let mass = self.term_sizes(row, k, |jet| jet.t > 0);
+            let own = |jet: &Jet| jet.t == 0 && self.direct.has_mass(row, jet.of);
+            let terms = self.direct.term_sizes(row, k, own);
+            let mass = self.direct.term_sizes(row, k, |jet| jet.t > 0);
             let rates = terms.iter().zip(mass).map(|(t, m)| t / m);
             median(rates.filter(|rate| rate.is_finite()).collect())
         });
         rates.filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min)
-    }
-
-    /// Σ |coefficient| |k|^a (2/h)^d over the chosen terms of a row, at each of its points.
-    fn term_sizes(&self, row: usize, k: f64, chosen: impl Fn(Jet) -> bool) -> Vec<f64> {
-        let mut sums = vec![0.0; self.direct.layout.rows[row].len];
-        let own = self.direct.terms.iter().filter(|(r, ..)| *r == row);
-        for (_, jet, coefficients) in own.filter(|(_, jet, _)| chosen(*jet)) {
-            let size =
-                k.abs().powi(i32::from(jet.x + jet.absx)) * self.scale().powi(i32::from(jet.y));
-            for (sum, c) in sums.iter_mut().zip(coefficients) {
-                *sum += c.abs() * size;
-            }
-        }
-        sums
-    }
-
-    /// dξ/dy, or 1 without a cross-stream coordinate.
-    pub fn scale(&self) -> f64 {
-        if self.resolution == 0 {
-            1.0
-        } else {
-            self.base.scale()
-        }
     }
 }
 
@@ -275,67 +243,49 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// i^turns
-pub fn quarter_turn(turns: usize) -> C64 {
-    match turns % 4 {
-        0 => C64::new(1.0, 0.0),
-        1 => C64::new(0.0, 1.0),
-        2 => C64::new(-1.0, 0.0),
-        _ => C64::new(0.0, -1.0),
-    }
-}
-
-fn layout(structure: &Structure, offsets: &OffsetsInfo, resolution: usize) -> Result<Layout> {
-    let resolution = structure.coordinate.is_some().then_some(resolution);
-    Layout::new(offsets, resolution)
-}
-
 /// Odd fields are i times real numbers, odd rows give i times real numbers.
-fn turns(structure: &Structure) -> (Vec<usize>, Vec<usize>) {
-    let profiles = structure.profiles();
+fn turns(structure: &Structure) -> (Table<FieldId, Turn>, Table<BalanceId, Turn>) {
     match &structure.parity {
-        None => (vec![0; structure.fields.len()], vec![0; profiles]),
-        Some(parity) => {
-            let turns = |odd: &Vec<bool>| odd.iter().map(|&o| usize::from(o)).collect();
-            (turns(&parity.fields), turns(&parity.rows))
-        }
+        None => (
+            structure.fields.map(|_| Turn::default()),
+            structure.balances.map(|_| Turn::default()),
+        ),
+        Some(parity) => (
+            parity.fields.map(|&odd| Turn::of(odd)),
+            parity.rows.map(|&odd| Turn::of(odd)),
+        ),
     }
 }
 
-fn terms(
-    points: &mut Points,
-    layout: &Layout,
+/// The terms of an operator with their coefficients at the points of their rows; `name` says what a row is.
+fn terms<Row: Id, Column: Id>(
+    states: &mut States,
+    layout: &Layout<Row, Column>,
+    infos: &[TermInfo<Row, Column>],
     kernel: KernelId,
-) -> Result<Vec<(usize, Jet, Vec<f64>)>> {
-    let (model, base) = (points.model, points.base);
-    let structure = model.structure();
-    let infos = if kernel == KernelId::Linear {
-        &structure.linear
-    } else {
-        &structure.adjoint
-    };
-    let mut terms: Vec<(usize, Jet, Vec<f64>)> =
-        infos.iter().map(|t| (t.row, t.jet, Vec::new())).collect();
-    let mut cache: Vec<(GridKind, Vec<Vec<f64>>)> = Vec::new();
-    for (row, block) in layout.rows.iter().enumerate() {
-        if !cache.iter().any(|(kind, _)| *kind == block.grid) {
-            let states = points.at(block.grid).iter();
-            let values: Vec<Vec<f64>> = states.map(|p| evaluate(model, kernel, p)).collect();
-            cache.push((block.grid, values));
-        }
-        let Some((_, values)) = cache.iter().find(|(kind, _)| *kind == block.grid) else {
-            continue;
-        };
-        for (index, term) in terms.iter_mut().enumerate().filter(|(_, t)| t.0 == row) {
-            term.2 = values.iter().map(|v| v[index]).collect();
-            if let Some(bad) = term.2.iter().position(|c| !c.is_finite()) {
-                let xi = Grid::new(block.grid).nodes[bad];
-                return Err(Error::computation(format!(
-                    "a coefficient of the balance `{}` is not finite at {} = {}: a law is singular at the base state there",
-                    structure.balances.get(row).map_or("", String::as_str),
-                    structure.coordinate.as_deref().unwrap_or("y"),
-                    base.y(xi)
-                )));
+    name: impl Fn(Row) -> String,
+) -> Result<Vec<CollocatedTerm<Row, Column>>> {
+    let mut terms: Vec<CollocatedTerm<Row, Column>> = infos
+        .iter()
+        .map(|info| CollocatedTerm {
+            row: info.row,
+            jet: info.jet,
+            coefficients: Vec::new(),
+        })
+        .collect();
+    for (points, rows) in layout.groups() {
+        let values = states.run(kernel, points);
+        let own = terms.iter_mut().enumerate();
+        for (index, term) in own.filter(|(_, term)| rows.contains(&term.row)) {
+            term.coefficients = values.iter().map(|v| v[index]).collect();
+            if let Some(bad) = term.coefficients.iter().position(|c| !c.is_finite()) {
+                let place: Place = states.space.places(points)[bad];
+                let coordinate = states.base.structure().coordinate.as_deref();
+                return Err(Error::Singular {
+                    balance: name(term.row),
+                    coordinate: coordinate.unwrap_or("y").to_owned(),
+                    place: states.space.y(place),
+                });
             }
         }
     }
@@ -344,42 +294,36 @@ fn terms(
 
 /// ∫ w|q|² dy of each weighted field as a quadratic form, exact for polynomial weights up to M.
 fn gram(
-    model: &dyn Model,
     base: &BaseState,
-    layout: &Layout,
-    discretisation: &Discretisation,
-    resolution: usize,
+    space: &Space,
+    layout: &Layout<BalanceId, FieldId>,
+    resolution: Option<usize>,
 ) -> Vec<Mat<f64>> {
-    let amplitude = &model.structure().amplitude;
-    let fields = &amplitude.weighted;
-    let (grid, half) = match resolution {
-        0 => (GridKind::Point, 0.5),
-        m => (
-            GridKind::Lobatto(3 * m + 1),
-            0.5 * (base.upper - base.lower),
-        ),
-    };
-    if fields.is_empty() {
+    let amplitude = &base.structure().amplitude;
+    if amplitude.weighted.is_empty() {
         return Vec::new();
     }
-    let nodes = Grid::new(grid).nodes;
-    let quadrature = clenshaw_curtis(nodes.len());
-    let weights: Vec<Vec<f64>> = nodes
-        .iter()
-        .map(|&xi| {
-            let out = evaluate(model, KernelId::Amplitude, &base.point(model, xi, 0.0));
-            match read_measure(amplitude, &out) {
-                Measure::Integral { weights, .. } => weights,
-                Measure::Point { .. } => Vec::new(),
-            }
-        })
-        .collect();
-    let form = |(position, &field): (usize, &usize)| {
-        let values = discretisation.matrix(layout.columns[field].grid, grid, 0);
+    let quadrature = space.quadrature(3 * resolution.unwrap_or(0) + 1);
+    let weights = |&(place, measure): &(Place, f64)| {
+        let out = evaluate(
+            base.model.as_ref(),
+            KernelId::Amplitude,
+            &base.at(place, 0.0),
+        );
+        match read_measure(amplitude, &out) {
+            Measure::Integral { weights, .. } => weights.iter().map(|w| measure * w).collect(),
+            Measure::Point { .. } => Vec::new(),
+        }
+    };
+    let weights: Vec<Vec<f64>> = quadrature.nodes.iter().map(weights).collect();
+    let form = |(position, &field): (usize, &FieldId)| {
+        let column = &layout.columns[field];
+        let values = space.derivative(column.points, quadrature.points, 0);
+        let values = values.matrix(column.len);
         let weighted = Mat::from_fn(values.nrows(), values.ncols(), |i, j| {
-            values[(i, j)] * quadrature[i] * half * weights[i][position]
+            values[(i, j)] * weights[i][position]
         });
         values.transpose() * &weighted
     };
-    fields.iter().enumerate().map(form).collect()
+    amplitude.weighted.iter().enumerate().map(form).collect()
 }

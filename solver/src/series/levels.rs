@@ -5,8 +5,8 @@
 
 use super::monomial::{Monomials, Place};
 use super::program::{Arithmetic, Program, Step};
-use crate::dense::vectorised;
 use crate::model::{C64, Number, Register, apply};
+use crate::numerics::dense::vectorised;
 
 /// All coefficients at the points of one grid.
 pub struct Levels {

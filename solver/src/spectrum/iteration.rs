@@ -1,11 +1,10 @@
-//! Two-sided inverse iteration.
+//! A mode refined, or followed, by inverse iteration.
 
 use super::EigenPair;
-use crate::dense::{Factorised, Scalar, dot, norm, scalars, scaled};
 use crate::model::C64;
-use crate::problem::Problem;
-
-const MOST_ITERATIONS: usize = 30;
+use crate::numerics::dense::{Scalar, dot, norm, scalars};
+use crate::numerics::{Applied, beside, inverse_iteration};
+use crate::problem::{Combination, Problem, Turned};
 
 /// The mode that continues `near`, if the iteration finds one.
 pub(super) fn continued(problem: &Problem, k: f64, near: &EigenPair) -> Option<EigenPair> {
@@ -25,13 +24,9 @@ fn predict(problem: &Problem, k: f64, near: &EigenPair) -> C64 {
 
 fn quotient<T: Scalar>(problem: &Problem, k: f64, near: &EigenPair) -> C64 {
     let (right, left): (Vec<T>, Vec<T>) = (scalars(&near.right), scalars(&near.left));
-    let above = dot(&left, &problem.operator::<T>(k).apply(&right));
-    above / dot(&left, &problem.mass::<T>(k).apply(&right))
-}
-
-/// A shift next to an eigenvalue: off it by a little, so that the matrix can be factorised.
-pub fn beside(c: C64, scale: f64) -> C64 {
-    c + C64::new(1e-7 * c.norm().max(1e-3 * scale), 0.0)
+    let operator = problem.direct.blocks::<T>(k, Combination::OPERATOR);
+    let above = dot(&left, &operator.apply(&right));
+    above / dot(&left, &problem.direct.mass::<T>(k).apply(&right))
 }
 
 /// |cosine| of the angle between two shapes.
@@ -48,21 +43,40 @@ pub(super) fn refine(
     k: f64,
     shift: C64,
     scale: f64,
-    right: &[C64],
-    left: &[C64],
+    right: &Turned,
+    left: &Turned,
 ) -> Option<EigenPair> {
     if problem.is_real() && shift.im.abs() <= 1e-12 * shift.norm().max(1e-6 * scale) {
         let real = C64::new(shift.re, 0.0);
-        let (right, left) = (turned::<f64>(right), turned::<f64>(left));
-        if let Some(pair) = iterate(problem, k, real, scale, right, left) {
+        if let Some(pair) = iterate::<f64>(problem, k, real, scale, (right, left)) {
             return Some(pair);
         }
     }
-    iterate(problem, k, shift, scale, turned::<C64>(right), turned(left))
+    iterate::<C64>(problem, k, shift, scale, (right, left))
+}
+
+fn iterate<T: Scalar>(
+    problem: &Problem,
+    k: f64,
+    shift: C64,
+    scale: f64,
+    (right, left): (&Turned, &Turned),
+) -> Option<EigenPair> {
+    let starts = (phased::<T>(right), phased(left));
+    let shifted = problem.shifted::<T>(k, shift);
+    let mass = problem.direct.mass::<T>(k);
+    let found = inverse_iteration(shifted, &mass, shift, scale, starts)?;
+    Some(EigenPair {
+        k,
+        c: found.c,
+        right: Turned(found.right).complex(),
+        left: Turned(found.left).complex(),
+        scale,
+    })
 }
 
 /// A vector with its largest entry turned real: a real mode may come with a complex factor.
-fn turned<T: Scalar>(x: &[C64]) -> Vec<T> {
+fn phased<T: Scalar>(x: &[C64]) -> Vec<T> {
     let largest = x
         .iter()
         .max_by(|a, b| a.norm().total_cmp(&b.norm()))
@@ -71,57 +85,4 @@ fn turned<T: Scalar>(x: &[C64]) -> Vec<T> {
         .filter(|l| l.norm() > 0.0)
         .map_or(C64::new(1.0, 0.0), |l| l.conj() / l.norm());
     x.iter().map(|v| T::from_complex(v * phase)).collect()
-}
-
-fn iterate<T: Scalar>(
-    problem: &Problem,
-    k: f64,
-    shift: C64,
-    scale: f64,
-    mut x: Vec<T>,
-    mut y: Vec<T>,
-) -> Option<EigenPair> {
-    let mass = problem.mass::<T>(k);
-    let factorised = Factorised::new(problem.shifted::<T>(k, shift));
-    let mut mass_x = mass.apply(&x);
-    let mut mass_y = mass.apply_adjoint(&y);
-    let (mut c, mut change) = (shift, f64::INFINITY);
-    for iteration in 0..MOST_ITERATIONS {
-        let new_x = factorised.solve(&mass_x);
-        let new_y = factorised.solve_adjoint(&mass_y);
-        let (size_x, size_y) = (norm(&new_x), norm(&new_y));
-        if !(size_x.is_finite() && size_y.is_finite()) || size_x == 0.0 || size_y == 0.0 {
-            return None;
-        }
-        let new_mass_x = mass.apply(&new_x);
-        // (σ M0 − L) x_new = M0 x_old
-        let denominator = dot(&new_y, &new_mass_x);
-        if denominator.norm() == 0.0 {
-            return None;
-        }
-        let next = shift - dot(&new_y, &mass_x) / denominator;
-        x = scaled(&new_x, 1.0 / size_x);
-        y = scaled(&new_y, 1.0 / size_y);
-        mass_x = scaled(&new_mass_x, 1.0 / size_x);
-        mass_y = mass.apply_adjoint(&y);
-        let step = (next - c).norm();
-        c = next;
-        // The eigenvalue converges twice as fast as the vectors: one more turn after it settles.
-        let floor = 1e-14 * c.norm().max((shift - c).norm()) + 1e-17 * scale;
-        if iteration > 0
-            && (step <= floor
-                || (step < 1e-10 * c.norm().max(1e-6 * scale) && step >= 0.5 * change))
-        {
-            let complex = |v: Vec<T>| v.into_iter().map(Scalar::complex).collect();
-            return Some(EigenPair {
-                k,
-                c,
-                right: complex(x),
-                left: complex(y),
-                scale,
-            });
-        }
-        change = step;
-    }
-    None
 }

@@ -6,12 +6,13 @@
 mod iteration;
 
 pub use crate::pencil::Spectrum;
-pub use iteration::{beside, likeness};
+pub use iteration::likeness;
 
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::numerics::beside;
 use crate::pencil::{Mode, Reduced};
-use crate::problem::Problem;
+use crate::problem::{Problem, Turned};
 use iteration::refine;
 
 /// Cosine between a mode and its continuation below which it counts as another mode.
@@ -28,9 +29,9 @@ pub struct EigenPair {
     /// The eigenvalue, e^{ct}.
     pub c: C64,
     /// L x = c M0 x, boundary rows included.
-    pub right: Vec<C64>,
+    pub right: Turned,
     /// yᴴ L = c yᴴ M0, boundary rows included.
-    pub left: Vec<C64>,
+    pub left: Turned,
     /// The unit of time of the spectrum around it.
     pub scale: f64,
 }
@@ -42,8 +43,8 @@ pub struct EigenPair {
 pub fn eigenvalues(problem: &Problem, k: f64) -> Result<Spectrum> {
     match (k == 0.0, problem.is_real()) {
         (true, _) => Reduced::<f64>::new(problem.bordered_pencil())?.eigenvalues(),
-        (false, true) => Reduced::<f64>::new(problem.pencil(k))?.eigenvalues(),
-        (false, false) => Reduced::<C64>::new(problem.pencil(k))?.eigenvalues(),
+        (false, true) => Reduced::<f64>::new(problem.direct.pencil(k))?.eigenvalues(),
+        (false, false) => Reduced::<C64>::new(problem.direct.pencil(k))?.eigenvalues(),
     }
 }
 
@@ -55,17 +56,17 @@ pub fn adjoint_eigenvalues(problem: &Problem, k: f64) -> Result<Spectrum> {
     let adjoint = problem.adjoint()?;
     match (k == 0.0, problem.is_real()) {
         (true, _) => Reduced::<f64>::new(problem.bordered_adjoint_pencil()?)?.eigenvalues(),
-        (false, true) => Reduced::<f64>::new(problem.pencil_of(adjoint, k))?.eigenvalues(),
-        (false, false) => Reduced::<C64>::new(problem.pencil_of(adjoint, k))?.eigenvalues(),
+        (false, true) => Reduced::<f64>::new(adjoint.pencil(k))?.eigenvalues(),
+        (false, false) => Reduced::<C64>::new(adjoint.pencil(k))?.eigenvalues(),
     }
 }
 
 /// Eigenvalues with right eigenvectors in the solver's basis, by decreasing real part.
 fn eigenvectors(problem: &Problem, k: f64) -> Result<(Spectrum, Vec<Mode>)> {
     if problem.is_real() {
-        Reduced::<f64>::new(problem.pencil(k))?.eigenvectors()
+        Reduced::<f64>::new(problem.direct.pencil(k))?.eigenvectors()
     } else {
-        Reduced::<C64>::new(problem.pencil(k))?.eigenvectors()
+        Reduced::<C64>::new(problem.direct.pencil(k))?.eigenvectors()
     }
 }
 
@@ -122,11 +123,9 @@ pub fn follow(problem: &Problem, k: f64, near: &EigenPair) -> Result<EigenPair> 
         .ok_or_else(no_modes)?;
     let overlap = likeness(&near.right, &mode.1);
     if overlap < SAME_SHAPE {
-        return Err(Error::computation(format!(
-            "the mode was lost at k = {k}: none has its shape (best overlap {overlap:.2}); try smaller steps"
-        )));
+        return Err(Error::Lost { k, overlap });
     }
-    confirm(problem, k, &spectrum, mode)
+    confirm(problem, k, &spectrum, (mode.0, Turned(mode.1)))
 }
 
 /// The mode `pair` of one collocation found again on another, from its interpolated shape.
@@ -144,16 +143,12 @@ pub fn transferred(from: &Problem, pair: &EigenPair, to: &Problem) -> Result<Eig
 }
 
 /// A vector of one collocation at the points of another.
-pub fn interpolated(from: &Problem, values: &[C64], to: &Problem) -> Vec<C64> {
+pub fn interpolated(from: &Problem, values: &Turned, to: &Problem) -> Turned {
     let (old, new) = (&from.direct.layout, &to.direct.layout);
-    let mut shape = vec![C64::new(0.0, 0.0); new.size];
-    for (a, b) in old.columns.iter().zip(&new.columns) {
-        let matrix = to.discretisation.matrix(a.grid, b.grid, 0);
-        for (i, value) in shape[b.offset..][..b.len].iter_mut().enumerate() {
-            *value = (0..a.len)
-                .map(|j| values[a.offset + j] * matrix[(i, j)])
-                .sum();
-        }
+    let mut shape = Turned(vec![C64::new(0.0, 0.0); new.size]);
+    for (a, b) in old.columns.iter().zip(new.columns.iter()) {
+        let between = to.space().derivative(a.points, b.points, 0);
+        shape[b.range()].copy_from_slice(&between.of(a.of(values)));
     }
     shape
 }
@@ -175,9 +170,9 @@ pub fn mirror_image(problem: &Problem, pair: &EigenPair) -> EigenPair {
 }
 
 /// A vector that is orthogonal to none that matters.
-fn arbitrary(size: usize) -> Vec<C64> {
+fn arbitrary(size: usize) -> Turned {
     let entry = |i: usize| C64::new(1.0 + 0.37 * ((i * i) as f64).sin(), 0.0);
-    (0..size).map(entry).collect()
+    Turned((0..size).map(entry).collect())
 }
 
 fn no_modes() -> Error {
@@ -185,18 +180,19 @@ fn no_modes() -> Error {
 }
 
 /// The mode after inverse iteration, where its eigenvalue is simple.
-fn confirm(problem: &Problem, k: f64, spectrum: &Spectrum, (c, right): Mode) -> Result<EigenPair> {
+fn confirm(
+    problem: &Problem,
+    k: f64,
+    spectrum: &Spectrum,
+    (c, right): (C64, Turned),
+) -> Result<EigenPair> {
     let scale = match spectrum.scale() {
         0.0 => problem.rate(k),
         scale => scale,
     };
     let gap = spectrum.gap(c);
     if gap <= SIMPLE * c.norm().max(scale) {
-        return Err(Error::computation(format!(
-            "the eigenvalue {c:.6e} at k = {k} is not simple: another one lies {gap:.1e} from it, so that no \
-             single mode has an amplitude equation of its own; break the symmetry that makes them equal, or \
-             name another mode with --near"
-        )));
+        return Err(Error::NotSimple { c, k, gap });
     }
     // The left vector comes from the iteration itself; any start that is not orthogonal will do.
     let start = arbitrary(right.len());
@@ -206,8 +202,6 @@ fn confirm(problem: &Problem, k: f64, spectrum: &Spectrum, (c, right): Mode) -> 
         } else {
             "it is not resolved: a larger M"
         };
-        Error::computation(format!(
-            "the eigenvalue {c:.6e} at k = {k} was not confirmed by inverse iteration, the next one being {gap:.1e} away; {advice}"
-        ))
+        Error::Unconfirmed { c, k, gap, advice }
     })
 }

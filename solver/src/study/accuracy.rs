@@ -12,6 +12,7 @@ use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum;
 use crate::weakly::{self, LandauPoint};
+use std::sync::Arc;
 
 /// A relative change of k, small enough for its effect to be linear, and large against rounding.
 const NUDGE: f64 = 1e-6;
@@ -61,26 +62,26 @@ pub struct Resonance {
 ///
 /// # Errors
 /// A c2 by quadrature that cannot be formed.
-pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Accuracy> {
+pub fn accuracy(setup: &Setup, point: &LandauPoint) -> Result<Accuracy> {
     let [c0, c2] = point.rounding();
     let mut found = Accuracy { c0, c2 };
     let k = point.k();
-    let problem = point.problem;
+    let problem = &point.problem;
     let missing = (C64::new(f64::INFINITY, 0.0), C64::new(f64::INFINITY, 0.0));
     // |dc/dk| k ε, wherever c2 is sensitive, near a resonance too.
     let nudged = spectrum::follow(problem, k * (1.0 + NUDGE), &point.pair)
         .and_then(|pair| weakly::from_pair(problem, pair))
         .map_or(missing, |p| (p.c0, p.c2));
     found.widen(ROUNDINGS * f64::EPSILON / NUDGE, point, nudged);
-    let m = setup.effective_resolution();
-    if m > 0 {
-        let near = beside(setup, base, point, m + 1).unwrap_or(missing);
+    let (m, base) = (setup.effective_resolution(), &problem.base);
+    if let Some((m, finer)) = m.zip(setup.finer_resolution()) {
+        let near = beside(base, point, Some(m + 1)).unwrap_or(missing);
         found.widen(SAFETY, point, near);
-        let finer = beside(setup, base, point, m + m.div_ceil(2)).unwrap_or(missing);
+        let finer = beside(base, point, Some(finer)).unwrap_or(missing);
         found.widen(1.0, point, finer);
     }
-    if let Some(refined) = base.refined(setup.model) {
-        let same = beside(setup, &refined, point, m).unwrap_or(missing);
+    if let Some(refined) = base.refined() {
+        let same = beside(&Arc::new(refined), point, m).unwrap_or(missing);
         found.widen(SAFETY, point, same);
     }
     // Without adjoint conditions, or where the adjoint mode hides in a cluster, one route remains.
@@ -95,13 +96,12 @@ pub fn accuracy(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<
 
 /// c0 and c2 of the same mode on another collocation, or another base state.
 pub fn beside(
-    setup: &Setup,
-    base: &BaseState,
+    base: &Arc<BaseState>,
     point: &LandauPoint,
-    resolution: usize,
+    resolution: Option<usize>,
 ) -> Result<(C64, C64)> {
-    let other = Problem::new(setup.model, base, &setup.discretisation, resolution)?;
-    let pair = spectrum::transferred(point.problem, &point.pair, &other)?;
+    let other = Arc::new(Problem::new(base, resolution)?);
+    let pair = spectrum::transferred(&point.problem, &point.pair, &other)?;
     let point = weakly::from_pair(&other, pair)?;
     Ok((point.c0, point.c2))
 }
@@ -111,13 +111,13 @@ pub fn beside(
 /// # Errors
 /// Spectra that cannot be computed.
 pub fn resonance(point: &LandauPoint) -> Result<Resonance> {
-    let problem = point.problem;
+    let problem = &point.problem;
     let second = spectrum::eigenvalues(problem, 2.0 * point.k())?;
     // A model whose mean modes are all closed by integrals has no mean spectrum to meet.
     let mean_flow = match spectrum::eigenvalues(problem, 0.0) {
         Ok(mean) => mean.distance(C64::new(2.0 * point.c0.re, 0.0)),
-        Err(Error::Computation(_)) => f64::INFINITY,
-        Err(error) => return Err(error),
+        Err(Error::Input(message)) => return Err(Error::Input(message)),
+        Err(_) => f64::INFINITY,
     };
     Ok(Resonance {
         mean_flow,

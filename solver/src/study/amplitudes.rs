@@ -6,6 +6,7 @@ use super::{Setup, check_wavenumber};
 use crate::base::BaseState;
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::numerics::dense::dot;
 use crate::problem::Problem;
 use crate::series::Monomial;
 use crate::spectrum::{self, EigenPair};
@@ -15,6 +16,7 @@ use crate::weakly::{
 use crate::words;
 use serde_json::{Value, json};
 use std::fmt;
+use std::sync::Arc;
 
 /// A solved problem nearer to singularity than this part of the slow rates is a small divisor.
 pub const SMALL: f64 = 5e-3;
@@ -104,19 +106,8 @@ impl AmplitudesReport {
             check_wavenumber(choice.k.abs())?;
         }
         let base = setup.base(None)?;
-        setup.with_problem(&base, |problem| {
-            let pairs = pairs(problem, choices)?;
-            Self::of(setup, &base, problem, pairs, order)
-        })
-    }
-
-    fn of(
-        setup: &Setup,
-        base: &BaseState,
-        problem: &Problem,
-        pairs: Vec<EigenPair>,
-        order: usize,
-    ) -> Result<Self> {
+        let problem = &setup.problem(&base)?;
+        let pairs = pairs(problem, choices)?;
         let mut expansion = Expansion::to(problem, pairs.clone(), order)?;
         let found = residual_order(&expansion);
         let residual_order = found
@@ -134,7 +125,7 @@ impl AmplitudesReport {
         let longer = expansion.last_coefficients();
         let system = longer.part(1..=order);
         let next = longer.part(order + 1..=usize::MAX);
-        let errors = errors(setup, base, problem, &pairs, &system)?;
+        let errors = errors(setup, problem, &pairs, &system)?;
         let equations: Vec<Vec<Coefficient>> = system
             .equations
             .iter()
@@ -309,8 +300,7 @@ pub fn next_order(system: &AmplitudeSystem, next: &AmplitudeSystem, z: &[C64]) -
 /// Absolute errors of all coefficients: what truncation, rounding and the base state's own error show.
 pub(super) fn errors(
     setup: &Setup,
-    base: &BaseState,
-    problem: &Problem,
+    problem: &Arc<Problem>,
     pairs: &[EigenPair],
     system: &AmplitudeSystem,
 ) -> Result<Vec<Vec<f64>>> {
@@ -341,30 +331,30 @@ pub(super) fn errors(
         roundings / nudge,
         nudged.and_then(|own| beside(problem, pairs, problem, own, order)),
     );
-    let m = setup.effective_resolution();
-    let elsewhere = |base: &BaseState, m: usize| -> Result<AmplitudeSystem> {
-        let other = Problem::new(setup.model, base, &setup.discretisation, m)?;
+    let elsewhere = |base: &Arc<BaseState>, m: Option<usize>| -> Result<AmplitudeSystem> {
+        let other = Arc::new(Problem::new(base, m)?);
         let found = pairs
             .iter()
             .map(|pair| spectrum::transferred(problem, pair, &other));
         let found: Result<Vec<EigenPair>> = found.collect();
         beside(problem, pairs, &other, found?, order)
     };
-    if m > 0 {
-        widen(SAFETY, elsewhere(base, m + 1));
-        widen(1.0, elsewhere(base, m + m.div_ceil(2)));
+    let (m, base) = (setup.effective_resolution(), &problem.base);
+    if let Some((m, finer)) = m.zip(setup.finer_resolution()) {
+        widen(SAFETY, elsewhere(base, Some(m + 1)));
+        widen(1.0, elsewhere(base, Some(finer)));
     }
-    if let Some(refined) = base.refined(setup.model) {
-        widen(SAFETY, elsewhere(&refined, m));
+    if let Some(refined) = base.refined() {
+        widen(SAFETY, elsewhere(&Arc::new(refined), m));
     }
     Ok(errors)
 }
 
 /// The coefficients of the same modes found elsewhere, with the phases that the modes have here.
 fn beside(
-    problem: &Problem,
+    problem: &Arc<Problem>,
     pairs: &[EigenPair],
-    other: &Problem,
+    other: &Arc<Problem>,
     found: Vec<EigenPair>,
     order: usize,
 ) -> Result<AmplitudeSystem> {
@@ -375,9 +365,9 @@ fn beside(
         .iter()
         .zip(&there.modes)
         .map(|(a, b)| {
-            let shape =
-                spectrum::interpolated(problem, &problem.solver_basis(&a.profile.values), other);
-            crate::dense::dot(&shape, &other.solver_basis(&b.profile.values)).arg()
+            let shape = problem.direct.turned(&a.profile.values);
+            let shape = spectrum::interpolated(problem, &shape, other);
+            dot(&shape, &other.direct.turned(&b.profile.values)).arg()
         })
         .collect();
     let mut system = there.last_coefficients();

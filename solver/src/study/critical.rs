@@ -1,12 +1,13 @@
 //! Critical points along an axis: where growth or c2 changes sign, where c2 jumps through infinity.
 
-use super::root::brent;
 use super::{Axis, Carried, Progress, Setup};
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::numerics::brent;
 use crate::problem::Problem;
 use crate::spectrum::EigenPair;
 use crate::weakly::{self, Selection};
+use std::sync::Arc;
 
 /// Points at which an interval is scanned for sign changes.
 const SCAN: usize = 61;
@@ -40,7 +41,7 @@ pub struct Question {
     /// What has to change sign.
     pub quantity: Quantity,
     /// The fixed wavenumber, unless it is the axis or minimised over.
-    pub k: f64,
+    pub k: Option<f64>,
     /// The mode that is followed; the most unstable one otherwise.
     pub near: Option<C64>,
 }
@@ -67,25 +68,24 @@ pub(super) struct Sample {
     pub carried: Carried,
 }
 
-pub(super) struct Sampler<'s, 'm> {
-    pub setup: &'s Setup<'m>,
+pub(super) struct Sampler<'s> {
+    pub setup: &'s Setup,
     pub question: Question,
 }
 
-impl Sampler<'_, '_> {
+impl Sampler<'_> {
     fn k(&self, x: f64) -> f64 {
-        if self.question.axis == Axis::Wavenumber {
-            x
-        } else {
-            self.question.k
-        }
+        self.question
+            .k
+            .filter(|_| self.question.axis != Axis::Wavenumber)
+            .unwrap_or(x)
     }
 
     fn sample(&self, x: f64, near: Option<&Carried>) -> Result<Sample> {
         let moved = self.setup.moved(self.question.axis, x)?;
         let base = match (self.question.axis, near) {
             (Axis::Wavenumber, Some(carried)) => carried.base.clone(),
-            _ => moved.base(near.map(|c| &c.base))?,
+            _ => moved.base(near.map(|c| c.base.as_ref()))?,
         };
         let selection = match (near, self.question.near) {
             (Some(carried), _) => Selection::Like(&carried.pair),
@@ -93,9 +93,8 @@ impl Sampler<'_, '_> {
             (None, None) => Selection::Leading,
         };
         let k = self.k(x);
-        let (value, pair) = moved.with_problem(&base, |problem| {
-            self.value(problem, weakly::select(problem, k, selection)?)
-        })?;
+        let problem = moved.problem(&base)?;
+        let (value, pair) = self.value(&problem, weakly::select(&problem, k, selection)?)?;
         Ok(Sample {
             x,
             value,
@@ -183,36 +182,31 @@ impl Sampler<'_, '_> {
     /// # Errors
     /// A root that they move by a good part of its value: it is not converged.
     pub fn error(&self, root: &Sample, slope: f64) -> Result<f64> {
-        let moved = self.setup.moved(self.question.axis, root.x)?;
-        let m = moved.effective_resolution();
-        let base = &root.carried.base;
-        let refined = base.refined(moved.model);
-        let own = Problem::new(moved.model, base, &moved.discretisation, m)?;
-        let finer = (m > 0).then(|| (base, m + m.div_ceil(2)));
-        let others = finer
-            .into_iter()
-            .chain(refined.as_ref().map(|base| (base, m)));
+        let (m, base) = (self.setup.effective_resolution(), &root.carried.base);
+        let own = self.setup.problem(base)?;
+        let finer = self
+            .setup
+            .finer_resolution()
+            .map(|m| (base.clone(), Some(m)));
+        let refined = base.refined().map(|base| (Arc::new(base), m));
         let mut error = 0.0_f64;
-        for (base, m) in others {
-            let other = Problem::new(moved.model, base, &moved.discretisation, m)?;
+        for (base, m) in finer.into_iter().chain(refined) {
+            let other = Arc::new(Problem::new(&base, m)?);
             let value = crate::spectrum::transferred(&own, &root.carried.pair, &other)
                 .and_then(|pair| self.value(&other, pair))
                 .map_or(f64::INFINITY, |(value, _)| value);
             error = error.max(((value - root.value) / slope).abs());
         }
         if error > UNRESOLVED * root.x.abs() {
-            return Err(Error::computation(format!(
-                "the critical point near {} is not converged at M = {m}: another M moves it by {error:.1e}; try a \
-                 larger M, such as -M {}",
-                root.x,
-                2 * m
-            )));
+            let what = format!("the critical point near {}", root.x);
+            let how_far = format!("another M moves it by {error:.1e}");
+            return Err(Error::unresolved(what, m, how_far));
         }
         Ok(error)
     }
 
     /// The quantity that changes sign, of a mode.
-    fn value(&self, problem: &Problem, pair: EigenPair) -> Result<(f64, EigenPair)> {
+    fn value(&self, problem: &Arc<Problem>, pair: EigenPair) -> Result<(f64, EigenPair)> {
         if self.question.quantity == Quantity::Growth {
             return Ok((pair.c.re, pair));
         }
@@ -256,7 +250,7 @@ pub fn critical(
         Quantity::C2 => "c2 does not pass through zero",
         Quantity::Resonance => "c2 does not jump through infinity",
     };
-    Err(Error::computation(format!(
+    Err(Error::NoCriticalPoint(format!(
         "{what} between {} and {}: {:.4e} at {:.6}, {:.4e} at {:.6}; try another interval, or --near to name a mode",
         question.from, question.to, first.value, first.x, last.value, last.x
     )))

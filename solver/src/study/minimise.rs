@@ -2,10 +2,10 @@
 //! k and the parameter.
 
 use super::critical::{Critical, Question, Sample, Sampler, TOLERANCE};
-use super::root::brent;
 use super::{Carried, Progress, Setup};
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::numerics::{Failure, Linearised, Newton, System, brent};
 use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
 use crate::weakly::{self, Envelope, Selection};
@@ -19,6 +19,10 @@ const STRIDE: usize = 6;
 const CREST_STEPS: usize = 16;
 /// Steps of Newton's method, in k alone and in k and the parameter.
 const MOST_STEPS: usize = 20;
+const METHOD: Newton = Newton {
+    most_steps: MOST_STEPS,
+    least_part: 1.0,
+};
 /// Relative change of the parameter by which derivatives along it are differenced.
 const NUDGE: f64 = 1e-6;
 /// Times that a higher crest may turn up at what seemed a root.
@@ -75,7 +79,7 @@ pub fn minimise(
     let (Some((x, first)), Some((y, last))) = (seen.first(), seen.last()) else {
         return Err(trouble.unwrap_or_else(|| Error::computation("the interval is empty")));
     };
-    Err(Error::computation(format!(
+    Err(Error::NoCriticalPoint(format!(
         "the largest growth rate over k in {from}..{to} does not change sign between {} and {}: {:.4e} at {x:.6}, \
          {:.4e} at {y:.6}; try another interval",
         question.from,
@@ -85,13 +89,13 @@ pub fn minimise(
     )))
 }
 
-struct Search<'s, 'm> {
-    setup: &'s Setup<'m>,
+struct Search<'s> {
+    setup: &'s Setup,
     question: Question,
     range: (f64, f64),
 }
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// The largest growth along the parameter, wherever it is found, and what failed last.
     fn scan(&self, progress: &dyn Progress) -> (Vec<(f64, Crest)>, Option<Error>) {
         let question = &self.question;
@@ -141,14 +145,13 @@ impl Search<'_, '_> {
     /// The largest growth at one value of the parameter: over the whole range, or on the crest of `near`.
     fn crest(&self, x: f64, near: Option<&Carried>) -> Result<Crest> {
         let moved = self.setup.moved(self.question.axis, x)?;
-        let base = moved.base(near.map(|c| &c.base))?;
-        let (pair, at_end) = moved.with_problem(&base, |problem| {
-            let start = match near {
-                Some(carried) => carried.pair.clone(),
-                None => highest(problem, self.question.near, self.range)?,
-            };
-            climb(problem, start, self.range)
-        })?;
+        let base = moved.base(near.map(|c| c.base.as_ref()))?;
+        let problem = moved.problem(&base)?;
+        let start = match near {
+            Some(carried) => carried.pair.clone(),
+            None => highest(&problem, self.question.near, self.range)?,
+        };
+        let (pair, at_end) = climb(&problem, start, self.range)?;
         Ok(Crest {
             carried: Carried { base, pair },
             at_end,
@@ -182,64 +185,32 @@ impl Search<'_, '_> {
         )))
     }
 
-    /// Newton's method in (k, x) for a = Re c0 = 0 and Re dc0/dk = 0, from between two values; nothing where it leaves
-    /// the bracket, or k the range.
+    /// The root by Newton's method from between two values; nothing where it leaves the bracket, or k the range.
     fn newton(&self, low: &(f64, Crest), high: &(f64, Crest)) -> Option<(f64, Crest)> {
         let (a, b) = (low.1.growth(), high.1.growth());
-        let between = |x: f64| (x - low.0) * (x - high.0) <= 0.0;
-        let mut x = low.0 - a * (high.0 - low.0) / (b - a);
-        let mut crest = high.1.clone();
-        for _ in 0..MOST_STEPS {
-            let k = crest.carried.pair.k;
-            let (here, envelope) = self.envelope(x, k, &crest.carried)?;
-            let step = NUDGE * x.abs().max((high.0 - low.0).abs());
-            let (there, moved) = self.envelope(x + step, k, &here)?;
-            let along = (there.pair.c.re - here.pair.c.re) / step;
-            let across = (moved.slope.re - envelope.slope.re) / step;
-            let (growth, slope) = (here.pair.c.re, envelope.slope.re);
-            // [a_k a_x; a_kk a_kx] (dk, dx) = −(a, a_k)
-            let determinant = slope * across - along * envelope.curvature.re;
-            let dk = (along * slope - across * growth) / determinant;
-            let dx = (envelope.curvature.re * growth - slope * slope) / determinant;
-            crest = Crest {
-                carried: here,
-                at_end: false,
-            };
-            if dx.abs() <= TOLERANCE * x.abs() && dk.abs() <= 1e-9 * k {
-                return Some((x, crest));
-            }
-            x += dx;
-            let inside = k + dk > self.range.0 && k + dk < self.range.1;
-            if !inside || !between(x) {
-                return None;
-            }
-            crest.carried.pair = self.at(x, k + dk, &crest.carried)?.pair;
-        }
-        None
+        let x = low.0 - a * (high.0 - low.0) / (b - a);
+        let mut extremum = Extremum {
+            search: self,
+            bracket: (low.0, high.0),
+            near: high.1.carried.clone(),
+        };
+        let start = vec![high.1.carried.pair.k, x];
+        let (at, found) = METHOD.solve(&mut extremum, start).ok()?;
+        let crest = Crest {
+            carried: found.known,
+            at_end: false,
+        };
+        Some((at[1], crest))
     }
 
-    /// A mode followed to another place.
-    fn at(&self, x: f64, k: f64, near: &Carried) -> Option<Carried> {
-        let moved = self.setup.moved(self.question.axis, x).ok()?;
-        let base = moved.base(Some(&near.base)).ok()?;
-        let pair = moved.with_problem(&base, |problem| spectrum::follow(problem, k, &near.pair));
-        Some(Carried {
-            pair: pair.ok()?,
-            base,
-        })
-    }
-
-    /// The same with its dc0/dk and d²c0/dk².
-    fn envelope(&self, x: f64, k: f64, near: &Carried) -> Option<(Carried, Envelope)> {
-        let moved = self.setup.moved(self.question.axis, x).ok()?;
-        let base = moved.base(Some(&near.base)).ok()?;
-        let found = moved.with_problem(&base, |problem| {
-            let pair = spectrum::follow(problem, k, &near.pair)?;
-            let envelope = Envelope::of(problem, &pair)?;
-            Ok((pair, envelope))
-        });
-        let (pair, envelope) = found.ok()?;
-        Some((Carried { base, pair }, envelope))
+    /// A mode followed to another place, with its dc0/dk and d²c0/dk².
+    fn envelope(&self, x: f64, k: f64, near: &Carried) -> Result<(Carried, Envelope)> {
+        let moved = self.setup.moved(self.question.axis, x)?;
+        let base = moved.base(Some(&near.base))?;
+        let problem = moved.problem(&base)?;
+        let pair = spectrum::follow(&problem, k, &near.pair)?;
+        let envelope = Envelope::of(&problem, &pair)?;
+        Ok((Carried { base, pair }, envelope))
     }
 
     /// The same root by Brent's method along the crest.
@@ -265,7 +236,10 @@ impl Search<'_, '_> {
             )));
         }
         let (k, c0) = (pair.k, pair.c);
-        let question = Question { k, ..self.question };
+        let question = Question {
+            k: Some(k),
+            ..self.question
+        };
         let sampler = Sampler {
             setup: self.setup,
             question,
@@ -282,6 +256,66 @@ impl Search<'_, '_> {
             k,
             c0,
         })
+    }
+}
+
+/// a = Re c0 = 0 and a_k = Re dc0/dk = 0 in (k, x).
+struct Extremum<'s> {
+    search: &'s Search<'s>,
+    bracket: (f64, f64),
+    /// The mode that is followed.
+    near: Carried,
+}
+
+impl System for Extremum<'_> {
+    /// [a_k a_x; a_kk a_kx]
+    type Jacobian = [[f64; 2]; 2];
+    type Known = Carried;
+    type Error = Failure;
+
+    fn linearise(&mut self, at: &[f64]) -> std::result::Result<Option<Linearised<Self>>, Failure> {
+        let (k, x) = (at[0], at[1]);
+        let (low, high) = self.bracket;
+        let nudge = NUDGE * x.abs().max((high - low).abs());
+        let values = self.search.envelope(x, k, &self.near).and_then(|here| {
+            let there = self.search.envelope(x + nudge, k, &here.0)?;
+            Ok((here, there))
+        });
+        let Ok(((here, envelope), (there, moved))) = values else {
+            return Ok(None);
+        };
+        self.near = here.clone();
+        let along = (there.pair.c.re - here.pair.c.re) / nudge;
+        let across = (moved.slope.re - envelope.slope.re) / nudge;
+        Ok(Some(Linearised {
+            residual: vec![here.pair.c.re, envelope.slope.re],
+            jacobian: [[envelope.slope.re, along], [envelope.curvature.re, across]],
+            known: here,
+        }))
+    }
+
+    fn admits(&self, at: &[f64]) -> bool {
+        let ((from, to), (low, high)) = (self.search.range, self.bracket);
+        at[0] > from && at[0] < to && (at[1] - low) * (at[1] - high) <= 0.0
+    }
+
+    fn step(
+        &mut self,
+        _: &[f64],
+        at: &Linearised<Self>,
+    ) -> std::result::Result<Option<Vec<f64>>, Failure> {
+        let [[a, b], [c, d]] = at.jacobian;
+        let [growth, slope] = [at.residual[0], at.residual[1]];
+        let determinant = a * d - b * c;
+        let step = vec![
+            (b * slope - d * growth) / determinant,
+            (c * growth - a * slope) / determinant,
+        ];
+        Ok(step.iter().all(|s| s.is_finite()).then_some(step))
+    }
+
+    fn is_last(&self, at: &[f64], step: &[f64]) -> bool {
+        step[1].abs() <= TOLERANCE * at[1].abs() && step[0].abs() <= 1e-9 * at[0]
     }
 }
 

@@ -12,7 +12,6 @@ pub mod orders;
 pub mod point;
 mod progress;
 pub mod quadrature;
-mod root;
 pub mod row;
 pub mod sensitivity;
 pub mod shard;
@@ -21,26 +20,26 @@ pub mod sweep;
 pub mod verify;
 
 use crate::base::{self, BaseState};
-use crate::collocation::Discretisation;
 use crate::error::{Error, Result};
-use crate::model::Model;
+use crate::model::{Model, ParameterId};
 use crate::parameters::Parameters;
 use crate::problem::Problem;
+use crate::space::Matrices;
 use crate::spectrum::EigenPair;
 use crate::weakly::{self, LandauPoint, Selection};
 use std::sync::Arc;
 
 /// A model with parameters and resolution: what the command line sets up.
 #[derive(Clone)]
-pub struct Setup<'m> {
+pub struct Setup {
     /// The kernels.
-    pub model: &'m dyn Model,
+    pub model: Arc<dyn Model>,
     /// Values, and which of them the base state determines.
     pub parameters: Parameters,
     /// M
     pub resolution: usize,
     /// Differentiation matrices, shared by all problems of the study.
-    pub discretisation: Arc<Discretisation>,
+    pub matrices: Arc<Matrices>,
 }
 
 /// A coordinate of a study: the wavenumber or a parameter.
@@ -48,8 +47,8 @@ pub struct Setup<'m> {
 pub enum Axis {
     /// k
     Wavenumber,
-    /// A parameter by position.
-    Parameter(usize),
+    /// A parameter.
+    Parameter(ParameterId),
 }
 
 impl Axis {
@@ -62,26 +61,25 @@ impl Axis {
             return Ok(Axis::Wavenumber);
         }
         let structure = model.structure();
-        let index = Parameters::index(structure, name)?;
-        if !structure.parameters[index].choices.is_empty() {
+        let parameter = Parameters::named(structure, name)?;
+        if !structure.parameters[parameter].choices.is_empty() {
             return Err(Error::input(format!(
                 "`{name}` is a switch: it cannot vary continuously"
             )));
         }
-        Ok(Axis::Parameter(index))
+        Ok(Axis::Parameter(parameter))
     }
 }
 
-impl<'m> Setup<'m> {
+impl Setup {
     /// The defaults of a model at a resolution.
-    pub fn new(model: &'m dyn Model, resolution: usize) -> Self {
+    pub fn new(model: Arc<dyn Model>, resolution: usize) -> Self {
         let parameters = Parameters::defaults(model.structure());
-        let discretisation = Arc::new(Discretisation::new());
         Setup {
             model,
             parameters,
             resolution,
-            discretisation,
+            matrices: Arc::default(),
         }
     }
 
@@ -108,13 +106,15 @@ impl<'m> Setup<'m> {
         format!("{hash:016x}")
     }
 
-    /// The resolution to collocate with: 0 without a cross-stream coordinate.
-    pub fn effective_resolution(&self) -> usize {
-        if self.model.structure().coordinate.is_some() {
-            self.resolution
-        } else {
-            0
-        }
+    /// The resolution to collocate with; nothing without a cross-stream coordinate.
+    pub fn effective_resolution(&self) -> Option<usize> {
+        let coordinate = self.model.structure().coordinate.as_ref();
+        coordinate.map(|_| self.resolution)
+    }
+
+    /// A finer resolution beside which errors show: 3M/2.
+    pub fn finer_resolution(&self) -> Option<usize> {
+        self.effective_resolution().map(|m| m + m.div_ceil(2))
     }
 
     /// The setup with one coordinate moved.
@@ -123,8 +123,10 @@ impl<'m> Setup<'m> {
     /// A value out of the parameter's range.
     pub fn moved(&self, axis: Axis, value: f64) -> Result<Self> {
         let mut setup = self.clone();
-        if let Axis::Parameter(index) = axis {
-            setup.parameters.set(self.model.structure(), index, value)?;
+        if let Axis::Parameter(parameter) = axis {
+            setup
+                .parameters
+                .set(self.model.structure(), parameter, value)?;
         }
         Ok(setup)
     }
@@ -133,42 +135,29 @@ impl<'m> Setup<'m> {
     ///
     /// # Errors
     /// See [`base::solve`].
-    pub fn base(&self, near: Option<&BaseState>) -> Result<BaseState> {
-        base::solve_near(self.model, &self.parameters, near)
+    pub fn base(&self, near: Option<&BaseState>) -> Result<Arc<BaseState>> {
+        base::solve(&self.model, &self.parameters, &self.matrices, near).map(Arc::new)
     }
 
-    /// Calls `study` with the Landau point of a selected mode.
+    /// The problem around a base state, collocated at M.
+    ///
+    /// # Errors
+    /// See [`Problem::new`].
+    pub fn problem(&self, base: &Arc<BaseState>) -> Result<Arc<Problem>> {
+        Problem::new(base, self.effective_resolution()).map(Arc::new)
+    }
+
+    /// The Landau point of a selected mode.
     ///
     /// # Errors
     /// Whatever fails on the way.
-    pub fn with_point<R>(
+    pub fn point(
         &self,
-        base: &BaseState,
+        base: &Arc<BaseState>,
         k: f64,
         selection: Selection,
-        study: impl FnOnce(&LandauPoint) -> Result<R>,
-    ) -> Result<R> {
-        self.with_problem(base, |problem| {
-            study(&weakly::point(problem, k, selection)?)
-        })
-    }
-
-    /// Calls `study` with the collocated problem.
-    ///
-    /// # Errors
-    /// Whatever fails on the way.
-    pub fn with_problem<R>(
-        &self,
-        base: &BaseState,
-        study: impl FnOnce(&Problem) -> Result<R>,
-    ) -> Result<R> {
-        let resolution = self.effective_resolution();
-        study(&Problem::new(
-            self.model,
-            base,
-            &self.discretisation,
-            resolution,
-        )?)
+    ) -> Result<LandauPoint> {
+        weakly::point(&self.problem(base)?, k, selection)
     }
 }
 
@@ -176,7 +165,7 @@ impl<'m> Setup<'m> {
 #[derive(Clone)]
 pub struct Carried {
     /// The base state there.
-    pub base: BaseState,
+    pub base: Arc<BaseState>,
     /// The mode there.
     pub pair: EigenPair,
 }

@@ -4,7 +4,6 @@ use super::accuracy::{Accuracy, Resonance, SINGULAR, accuracy, resonance, slow_r
 use super::amplitudes::{NAMED, errors, small_divisors};
 use super::orders::check_order;
 use super::{Setup, check_wavenumber, sensitivity};
-use crate::base::BaseState;
 use crate::error::{Error, Result};
 use crate::model::{C64, ClosureKind};
 use crate::series::Monomial;
@@ -76,16 +75,11 @@ impl PointReport {
         check_wavenumber(k)?;
         check_order(order)?;
         let base = setup.base(None)?;
-        setup.with_point(&base, k, selection, |point| {
-            Self::of(setup, &base, point, order)
-        })
-    }
-
-    fn of(setup: &Setup, base: &BaseState, point: &LandauPoint, order: usize) -> Result<Self> {
+        let point = &setup.point(&base, k, selection)?;
         let structure = setup.model.structure();
         let resonance = resonance(point)?;
         check_distances(point, &resonance)?;
-        let error = accuracy(setup, base, point)?;
+        let error = accuracy(setup, point)?;
         check_errors(setup, point, &error)?;
         let mut values = Vec::new();
         for (info, value) in structure.outputs.iter().zip(outputs(point)) {
@@ -98,23 +92,23 @@ impl PointReport {
             values.push((info.name.clone(), value));
         }
         let mut slopes = Vec::new();
-        for (index, slope) in sensitivity::parameters(setup, base, &point.pair) {
-            let name = structure.parameters[index].name.clone();
+        for (id, slope) in sensitivity::parameters(setup, &base, &point.pair) {
+            let name = structure.parameters[id].name.clone();
             let slope = slope.map_err(|error| {
                 Error::computation(format!("dc0/d{name} cannot be formed: {error}"))
             })?;
             slopes.push((name, slope));
         }
         let (c0, c2) = ((point.c0, error.c0), (point.c2, error.c2));
-        let (equation, mut small_divisors) = longer(setup, base, point, &error, order)?;
+        let (equation, mut small_divisors) = longer(setup, point, &error, order)?;
         // A resonance of the pair says nothing against the coefficients of the single wave.
-        let waves = waves(setup, base, point).unwrap_or_else(|error| {
+        let waves = waves(setup, point).unwrap_or_else(|error| {
             small_divisors.push(format!("left and right waves: {error}"));
             None
         });
         let mut closures = point.problem.borders.iter();
         Ok(PointReport {
-            envelope: Envelope::of(point.problem, &point.pair)?,
+            envelope: Envelope::of(&point.problem, &point.pair)?,
             conserved_mean: closures
                 .any(|b| matches!(b.kind, ClosureKind::Conserved | ClosureKind::Claimed)),
             waves,
@@ -213,7 +207,6 @@ impl PointReport {
 /// The amplitude equation to an order, and the solved problems that are as good as singular.
 fn longer(
     setup: &Setup,
-    base: &BaseState,
     point: &LandauPoint,
     error: &Accuracy,
     order: usize,
@@ -241,10 +234,10 @@ fn longer(
         return Ok((equation, words(&distances)));
     }
     let pairs = [point.pair.clone()];
-    let expansion = Expansion::to(point.problem, pairs.to_vec(), order - 1)?;
+    let expansion = Expansion::to(&point.problem, pairs.to_vec(), order - 1)?;
     let words = words(&expansion.distances());
     let system = expansion.last_coefficients();
-    let errors = errors(setup, base, point.problem, &pairs, &system)?;
+    let errors = errors(setup, &point.problem, &pairs, &system)?;
     for (term, error) in system.equations[0].iter().zip(&errors[0]).skip(2) {
         let degree = term.monomial.degree();
         let name = format!("c{}", degree - 1);
@@ -261,13 +254,16 @@ fn longer(
 }
 
 /// Both coefficients of a wave in a mirror-symmetric model, with their error.
-fn waves(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Option<Waves>> {
+fn waves(setup: &Setup, point: &LandauPoint) -> Result<Option<Waves>> {
     if !point.problem.is_real() || point.c0.im == 0.0 {
         return Ok(None);
     }
-    let pairs = [point.pair.clone(), mirror_image(point.problem, &point.pair)];
-    let system = Expansion::to(point.problem, pairs.to_vec(), 2)?.last_coefficients();
-    let errors = errors(setup, base, point.problem, &pairs, &system)?;
+    let pairs = [
+        point.pair.clone(),
+        mirror_image(&point.problem, &point.pair),
+    ];
+    let system = Expansion::to(&point.problem, pairs.to_vec(), 2)?.last_coefficients();
+    let errors = errors(setup, &point.problem, &pairs, &system)?;
     Ok(Some(Waves::of(&system, &errors[0])))
 }
 
@@ -275,20 +271,18 @@ fn waves(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Option<
 fn check_distances(point: &LandauPoint, resonance: &Resonance) -> Result<()> {
     let scale = slow_rate(point);
     if resonance.mean_flow <= SINGULAR * scale {
-        return Err(Error::computation(format!(
-            "the problem for X[0;2] is nearly singular: an eigenvalue of the mean problem lies {:.1e} from 2 a0. \
-             Does the model conserve an integral, or leave the constant of a field open, that the spec does not \
-             name? The block `mean` accepts `conserved` and `gauge`",
-            resonance.mean_flow
-        )));
+        return Err(Error::OpenMean {
+            of: "X[0;2]".to_owned(),
+            distance: Some(resonance.mean_flow),
+        });
     }
     if resonance.second_harmonic <= SINGULAR * scale {
-        return Err(Error::computation(format!(
-            "the problem for X[2;2] is nearly singular: an eigenvalue at 2k lies {:.1e} from 2 c0, a 2:1 resonance; \
-             try a wavenumber beside k = {}",
-            resonance.second_harmonic,
-            point.k()
-        )));
+        return Err(Error::Resonance {
+            of: "X[2;2]".to_owned(),
+            q: 2.0 * point.k(),
+            modes: vec![point.k()],
+            distance: Some(resonance.second_harmonic),
+        });
     }
     Ok(())
 }
@@ -318,14 +312,7 @@ fn unconverged(setup: &Setup, name: &str, error: f64, size: f64) -> Error {
         ),
         false => "another resolution has no such mode".to_owned(),
     };
-    let advice = match setup.effective_resolution() {
-        0 => "parameters off this place".to_owned(),
-        m => format!("a larger M, such as -M {}", 2 * m),
-    };
-    Error::computation(format!(
-        "{name} is not converged at M = {}: {how_far}; try {advice}",
-        setup.resolution
-    ))
+    Error::unresolved(name, setup.effective_resolution(), how_far)
 }
 
 impl fmt::Display for PointReport {

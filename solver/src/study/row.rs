@@ -3,8 +3,8 @@
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 
-/// Columns after the axes.
-pub(super) const COLUMNS: [&str; 11] = [
+/// Columns of numbers after the axes.
+pub const NUMBERS: [&str; 9] = [
     "c0_re",
     "c0_im",
     "c0_error",
@@ -12,9 +12,22 @@ pub(super) const COLUMNS: [&str; 11] = [
     "c2_im",
     "c2_error",
     "amplitude",
-    "bifurcation",
     "mean_flow",
     "second_harmonic",
+];
+
+/// Columns after the axes, as they stand in a table.
+pub(super) const COLUMNS: [&str; 11] = [
+    NUMBERS[0],
+    NUMBERS[1],
+    NUMBERS[2],
+    NUMBERS[3],
+    NUMBERS[4],
+    NUMBERS[5],
+    NUMBERS[6],
+    "bifurcation",
+    NUMBERS[7],
+    NUMBERS[8],
     "status",
 ];
 
@@ -92,19 +105,30 @@ impl Row {
         }
     }
 
+    /// Its numbers, in the order of [`NUMBERS`].
+    pub fn numbers(&self) -> [Option<f64>; 9] {
+        let part = |c: Option<[f64; 2]>, i: usize| c.map(|c| c[i]);
+        [
+            part(self.c0, 0),
+            part(self.c0, 1),
+            self.c0_error,
+            part(self.c2, 0),
+            part(self.c2, 1),
+            self.c2_error,
+            self.amplitude,
+            self.mean_flow,
+            self.second_harmonic,
+        ]
+    }
+
     /// Its cells: the coordinates, then [`COLUMNS`]; what is missing is empty.
     fn record(&self) -> Vec<String> {
-        let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
+        let number = |value: &Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
+        let numbers: Vec<String> = self.numbers().iter().map(number).collect();
         let mut record: Vec<String> = self.coordinates.iter().map(f64::to_string).collect();
-        for (pair, error) in [(self.c0, self.c0_error), (self.c2, self.c2_error)] {
-            record.push(number(pair.map(|p| p[0])));
-            record.push(number(pair.map(|p| p[1])));
-            record.push(number(error));
-        }
-        record.push(number(self.amplitude));
+        record.extend_from_slice(&numbers[..7]);
         record.push(self.bifurcation.clone());
-        record.push(number(self.mean_flow));
-        record.push(number(self.second_harmonic));
+        record.extend_from_slice(&numbers[7..]);
         record.push(self.status.clone());
         record
     }

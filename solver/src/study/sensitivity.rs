@@ -2,13 +2,15 @@
 
 use super::Setup;
 use crate::base::{BaseState, automatic_conditions};
-use crate::dense::{apply, dot};
 use crate::error::{Error, Result};
-use crate::model::C64;
-use crate::problem::{Combination, Problem};
+use crate::model::{C64, ParameterId};
+use crate::numerics::Applied;
+use crate::numerics::dense::dot;
+use crate::problem::Combination;
 use crate::spectrum::EigenPair;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Relative step of the difference formula, of fourth order, for the operators.
 const STEP: f64 = 1e-3;
@@ -26,13 +28,17 @@ struct Partial {
 /// The operators' derivative is a fourth-order difference; modes are not differenced. A parameter that L, its
 /// conditions and the base state do not hold gives zero exactly. Automatic parameters follow their conditions
 /// g = 0: dc0/dp = ∂c0/∂p − ∂c0/∂h (∂g/∂h)⁻¹ ∂g/∂p.
-pub fn parameters(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Vec<(usize, Result<C64>)> {
+pub fn parameters(
+    setup: &Setup,
+    base: &BaseState,
+    pair: &EigenPair,
+) -> Vec<(ParameterId, Result<C64>)> {
     let structure = setup.model.structure();
-    let numbers = 0..structure.parameters.len();
-    let numbers = numbers.filter(|&i| structure.parameters[i].choices.is_empty());
-    let (automatic, free): (Vec<usize>, Vec<usize>) =
-        numbers.partition(|&i| setup.parameters.automatic[i]);
-    let partial = |&index: &usize| partial(setup, base, pair, index, &automatic);
+    let numbers = structure.parameters.ids();
+    let numbers = numbers.filter(|&id| structure.parameters[id].choices.is_empty());
+    let (automatic, free): (Vec<ParameterId>, Vec<ParameterId>) =
+        numbers.partition(|&id| setup.parameters.automatic[id]);
+    let partial = |&id: &ParameterId| partial(setup, base, pair, id, &automatic);
     let own: Result<Vec<Partial>> = automatic.par_iter().map(partial).collect();
     let follow = |found: Result<Partial>| -> Result<C64> {
         let found = found?;
@@ -52,36 +58,31 @@ pub fn parameters(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Vec<(usi
             .sum();
         Ok(found.growth - along)
     };
-    let found: Vec<(usize, Result<Partial>)> = free
-        .par_iter()
-        .map(|index| (*index, partial(index)))
-        .collect();
-    found
-        .into_iter()
-        .map(|(index, p)| (index, follow(p)))
-        .collect()
+    let found: Vec<(ParameterId, Result<Partial>)> =
+        free.par_iter().map(|id| (*id, partial(id))).collect();
+    found.into_iter().map(|(id, p)| (id, follow(p))).collect()
 }
 
 fn partial(
     setup: &Setup,
     base: &BaseState,
     pair: &EigenPair,
-    index: usize,
-    automatic: &[usize],
+    parameter: ParameterId,
+    automatic: &[ParameterId],
 ) -> Result<Partial> {
-    let info = &setup.model.structure().parameters[index];
-    let value = base.parameters.values[index];
+    let info = &setup.model.structure().parameters[parameter];
+    let value = base.parameters.values[parameter];
     let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
     let shifted = |shift: f64| -> Result<Partial> {
         let mut moved = setup.clone();
         // The formula may reach past a declared range.
         moved.parameters = base.parameters.clone();
         moved.parameters.automatic.fill(false);
-        moved.parameters.values[index] = value + shift * step;
-        let state = base.moved(setup.model, &moved.parameters)?;
+        moved.parameters.values[parameter] = value + shift * step;
+        let state = Arc::new(base.moved(&moved.parameters)?);
         Ok(Partial {
             growth: quotient_at(&moved, &state, pair)?,
-            conditions: automatic_conditions(setup.model, &state, automatic),
+            conditions: automatic_conditions(&state, automatic),
         })
     };
     // Inside the range if need be: one-sided where a bound is near.
@@ -119,22 +120,9 @@ fn partial(
 }
 
 /// ⟨Y, L X⟩ / ⟨Y, M0 X⟩ with the vectors of another state: stationary at the mode itself.
-fn quotient_at(setup: &Setup, base: &BaseState, pair: &EigenPair) -> Result<C64> {
-    setup.with_problem(base, |problem| {
-        let above = dot(&pair.left, &problem.operator(pair.k).apply(&pair.right));
-        Ok(above / dot(&pair.left, &problem.mass(pair.k).apply(&pair.right)))
-    })
-}
-
-/// dc0/dk, exactly: k enters through (ik)^a |k|^b alone.
-pub fn wavenumber(problem: &Problem, pair: &EigenPair) -> C64 {
-    let combination = Combination {
-        mass: -pair.c,
-        operator: C64::new(1.0, 0.0),
-        walls: 1.0,
-    };
-    let derivative = problem.wavenumber_derivative::<C64>(pair.k, combination, 1);
-    let mass = problem.mass::<C64>(pair.k);
-    let above = dot(&pair.left, &apply(derivative.as_ref(), &pair.right));
-    above / dot(&pair.left, &mass.apply(&pair.right))
+fn quotient_at(setup: &Setup, base: &Arc<BaseState>, pair: &EigenPair) -> Result<C64> {
+    let direct = &setup.problem(base)?.direct;
+    let operator = direct.blocks(pair.k, Combination::OPERATOR);
+    let above = dot(&pair.left, &operator.apply(&pair.right));
+    Ok(above / dot(&pair.left, &direct.mass(pair.k).apply(&pair.right)))
 }

@@ -104,7 +104,7 @@ fn is_done(path: &Path, sweep: &str, share: Share) -> bool {
     Shard::read(path).is_ok_and(|known| known.sweep == sweep && known.share == share)
 }
 
-impl Sweep<'_, '_> {
+impl Sweep<'_> {
     /// Computes one share into a file, whole or not at all, with a journal beside it as any sweep has; what is done is
     /// not done again.
     ///

@@ -47,22 +47,20 @@ impl SpectrumReport {
             )));
         }
         let base = setup.base(None)?;
-        setup.with_problem(&base, |problem| {
-            let direct = eigenvalues(problem, k)?;
-            let adjoint = adjoint_eigenvalues(problem, k).map_err(|e| e.to_string());
-            let structure = setup.model.structure();
-            let error = error(setup, problem, k, &direct)?;
-            Ok(SpectrumReport {
-                model: structure.name.clone(),
-                title: structure.title.clone(),
-                parameters: words::parameters(setup, &base.parameters),
-                k,
-                resolution: setup.resolution,
-                has_coordinate: structure.coordinate.is_some(),
-                direct,
-                adjoint,
-                error,
-            })
+        let problem = setup.problem(&base)?;
+        let direct = eigenvalues(&problem, k)?;
+        let adjoint = adjoint_eigenvalues(&problem, k).map_err(|e| e.to_string());
+        let structure = setup.model.structure();
+        Ok(SpectrumReport {
+            model: structure.name.clone(),
+            title: structure.title.clone(),
+            parameters: words::parameters(setup, &base.parameters),
+            k,
+            resolution: setup.resolution,
+            has_coordinate: structure.coordinate.is_some(),
+            error: error(setup, &problem, k, &direct)?,
+            direct,
+            adjoint,
         })
     }
 
@@ -107,19 +105,15 @@ impl SpectrumReport {
 fn error(setup: &Setup, problem: &Problem, k: f64, direct: &Spectrum) -> Result<f64> {
     let leading = direct.values.first().copied().unwrap_or_default();
     let scale = direct.scale().max(leading.norm());
-    let m = setup.effective_resolution();
-    if m == 0 {
+    let Some(finer) = setup.finer_resolution() else {
         return Ok(1e-14 * scale);
-    }
-    let finer = m + m.div_ceil(2);
-    let other = Problem::new(setup.model, problem.base, &setup.discretisation, finer)?;
+    };
+    let other = Problem::new(&problem.base, Some(finer))?;
     let error = eigenvalues(&other, k)?.distance(leading).max(1e-14 * scale);
     if error > UNCONVERGED * scale {
-        return Err(Error::computation(format!(
-            "the leading eigenvalue at k = {k} is not converged at M = {m}: another M moves it by {error:.1e}; try a \
-             larger M, such as -M {}",
-            2 * m
-        )));
+        let what = format!("the leading eigenvalue at k = {k}");
+        let how_far = format!("another M moves it by {error:.1e}");
+        return Err(Error::unresolved(what, problem.resolution, how_far));
     }
     Ok(error)
 }

@@ -18,7 +18,7 @@ use crate::weakly::{self, Bifurcation, LandauPoint, Selection, equilibrium};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Points of the first axis that one worker follows.
 const CHUNK: usize = 40;
@@ -36,9 +36,9 @@ pub struct Range {
 }
 
 /// A sweep over the product of its ranges, the first varying fastest.
-pub struct Sweep<'s, 'm> {
+pub struct Sweep<'s> {
     /// What is swept.
-    pub setup: &'s Setup<'m>,
+    pub setup: &'s Setup,
     /// The first varies fastest.
     pub ranges: Vec<Range>,
     /// The mode at the start; the leading one otherwise.
@@ -56,7 +56,7 @@ pub struct Resumed {
     pub damaged: usize,
 }
 
-impl Sweep<'_, '_> {
+impl Sweep<'_> {
     /// Number of points.
     pub fn len(&self) -> usize {
         self.ranges.iter().map(|r| r.values.len()).product()
@@ -169,7 +169,8 @@ impl Sweep<'_, '_> {
     ) -> BTreeMap<usize, Vec<Row>> {
         // Chunks of one line share its base state, made by whichever comes first.
         let lines = self.chunk_count() / self.chunks_per_line();
-        let bases: Vec<OnceLock<Result<BaseState>>> = (0..lines).map(|_| OnceLock::new()).collect();
+        let bases: Vec<OnceLock<Result<Arc<BaseState>>>> =
+            (0..lines).map(|_| OnceLock::new()).collect();
         progress.begin(part.clone().map(|chunk| self.places(chunk).len()).sum());
         let chunks: BTreeMap<usize, Vec<Row>> = part
             .into_par_iter()
@@ -211,7 +212,7 @@ impl Sweep<'_, '_> {
     fn chunk(
         &self,
         chunk: usize,
-        base: &OnceLock<Result<BaseState>>,
+        base: &OnceLock<Result<Arc<BaseState>>>,
         progress: &dyn Progress,
     ) -> Vec<Row> {
         let places = self.places(chunk);
@@ -248,7 +249,7 @@ impl Sweep<'_, '_> {
     }
 
     /// The setup and the wavenumber of a place.
-    fn at(&self, place: &[f64]) -> Result<(Setup<'_>, f64)> {
+    fn at(&self, place: &[f64]) -> Result<(Setup, f64)> {
         let mut setup = self.setup.clone();
         let mut k = self.k.unwrap_or(0.0);
         for (range, &value) in self.ranges.iter().zip(place) {
@@ -263,7 +264,7 @@ impl Sweep<'_, '_> {
     /// A point whose base state is its own.
     fn evaluate(&self, place: &[f64], near: Option<&Carried>) -> Result<(Row, Carried)> {
         let (setup, k) = self.at(place)?;
-        let base = setup.base(near.map(|c| &c.base))?;
+        let base = setup.base(near.map(|c| c.base.as_ref()))?;
         let (row, pair) = self.row(
             &Collocations::new(&setup, &base)?,
             place,
@@ -321,18 +322,18 @@ impl Sweep<'_, '_> {
 }
 
 /// The problem at M, and a coarser one beside which its errors show.
-struct Collocations<'m> {
-    own: Problem<'m>,
-    coarser: Option<Problem<'m>>,
+struct Collocations {
+    own: Arc<Problem>,
+    coarser: Option<Arc<Problem>>,
 }
 
-impl<'m> Collocations<'m> {
-    fn new(setup: &'m Setup, base: &'m BaseState) -> Result<Self> {
-        let m = setup.effective_resolution();
-        let problem = |m| Problem::new(setup.model, base, &setup.discretisation, m);
+impl Collocations {
+    fn new(setup: &Setup, base: &Arc<BaseState>) -> Result<Self> {
+        let coarser = setup.effective_resolution().map(|m| m - m.div_ceil(6));
+        let coarser = coarser.map(|m| Problem::new(base, Some(m)).map(Arc::new));
         Ok(Collocations {
-            own: problem(m)?,
-            coarser: (m > 0).then(|| problem(m - m.div_ceil(6))).transpose()?,
+            own: setup.problem(base)?,
+            coarser: coarser.transpose()?,
         })
     }
 

@@ -10,12 +10,14 @@
 use super::bifurcation::{Bifurcation, equilibrium};
 use super::mode::{JetTable, Mode};
 use super::response::{Multiplier, Question, Response, arithmetic};
-use crate::collocation::GridKind;
-use crate::dense::dot;
 use crate::error::{Error, Result};
-use crate::model::{C64, End, Jet};
-use crate::problem::Problem;
+use crate::model::{C64, Jet};
+use crate::numerics::Applied;
+use crate::numerics::dense::dot;
+use crate::problem::{Problem, Turned};
+use crate::space::Points;
 use crate::spectrum::{self, EigenPair};
+use std::sync::Arc;
 
 /// Which mode is meant.
 #[derive(Clone, Copy, Debug)]
@@ -29,9 +31,9 @@ pub enum Selection<'a> {
 }
 
 /// c0 and c2 with the modes up to second order.
-pub struct LandauPoint<'p, 'm> {
+pub struct LandauPoint {
     /// The collocated problem.
-    pub problem: &'p Problem<'m>,
+    pub problem: Arc<Problem>,
     /// The mode.
     pub pair: EigenPair,
     /// Its eigenvalue.
@@ -55,11 +57,7 @@ pub struct LandauPoint<'p, 'm> {
 ///
 /// # Errors
 /// A mode that is not found, a resonance.
-pub fn point<'p, 'm>(
-    problem: &'p Problem<'m>,
-    k: f64,
-    selection: Selection,
-) -> Result<LandauPoint<'p, 'm>> {
+pub fn point(problem: &Arc<Problem>, k: f64, selection: Selection) -> Result<LandauPoint> {
     from_pair(problem, select(problem, k, selection)?)
 }
 
@@ -79,11 +77,7 @@ pub fn select(problem: &Problem, k: f64, selection: Selection) -> Result<EigenPa
 ///
 /// # Errors
 /// As [`point`].
-pub fn warm_point<'p, 'm>(
-    problem: &'p Problem<'m>,
-    k: f64,
-    near: &EigenPair,
-) -> Result<LandauPoint<'p, 'm>> {
+pub fn warm_point(problem: &Arc<Problem>, k: f64, near: &EigenPair) -> Result<LandauPoint> {
     point(problem, k, Selection::Like(near))
 }
 
@@ -91,9 +85,9 @@ pub fn warm_point<'p, 'm>(
 ///
 /// # Errors
 /// A resonance.
-pub fn from_pair<'p, 'm>(problem: &'p Problem<'m>, pair: EigenPair) -> Result<LandauPoint<'p, 'm>> {
+pub fn from_pair(problem: &Arc<Problem>, pair: EigenPair) -> Result<LandauPoint> {
     let fundamental = fundamental(problem, &pair)?;
-    let respond = |q: f64, shift: C64, forcing: Vec<C64>| {
+    let respond = |q: f64, shift: C64, forcing: Turned| {
         let question = Question {
             q,
             shift,
@@ -120,13 +114,12 @@ pub fn from_pair<'p, 'm>(problem: &'p Problem<'m>, pair: EigenPair) -> Result<La
         product(problem, &[&conjugate, &x22], 2.0),
         product(problem, &[&x, &x, &conjugate], 3.0),
     ];
-    let mass_x = problem
-        .mass::<C64>(pair.k)
-        .apply(&problem.solver_basis(&fundamental.values));
+    let mass = problem.direct.mass::<C64>(pair.k);
+    let mass_x = mass.apply(&problem.direct.turned(&fundamental.values));
     let below = dot(&pair.left, &mass_x);
     let contributions = third.map(|forcing| dot(&pair.left, &forcing) / below);
     Ok(LandauPoint {
-        problem,
+        problem: problem.clone(),
         c0: pair.c,
         c2: contributions.iter().sum(),
         contributions,
@@ -144,33 +137,29 @@ pub fn from_pair<'p, 'm>(problem: &'p Problem<'m>, pair: EigenPair) -> Result<La
 /// # Errors
 /// A mode that the spec's normalisation does not fit.
 pub fn fundamental(problem: &Problem, pair: &EigenPair) -> Result<Mode> {
-    let values = problem.physical(&pair.right);
-    let factor = super::normalise(problem, pair.k, &values)?;
-    let values: Vec<C64> = values.into_iter().map(|v| v * factor).collect();
-    Ok(Mode {
-        q: pair.k,
-        rate: values.iter().map(|v| v * pair.c).collect(),
-        values,
-        drift: Vec::new(),
-        uniform: Vec::new(),
-    })
+    let values = problem.direct.physical(&pair.right);
+    let values = values.times(super::normalise(problem, pair.k, &values)?);
+    let rate = values.times(pair.c);
+    Ok(Mode::new(pair.k, values, rate))
 }
 
 fn singular(k: f64, mean: bool) -> Error {
-    Error::computation(if mean {
-        "the problem for X[0;2] is singular, a mean is left open: the block `mean` accepts `gauge` for a field that \
-         is determined up to a constant and `conserved` for an integral that does not change"
-            .to_owned()
-    } else {
-        format!(
-            "the problem for X[2;2] is singular, a resonance at k = {k}: try a wavenumber beside it, or include the \
-             mode that is met: `landau amplitudes` with --mode k={k} --mode k={}",
-            2.0 * k
-        )
-    })
+    let distance = None;
+    match mean {
+        true => Error::OpenMean {
+            of: "X[0;2]".to_owned(),
+            distance,
+        },
+        false => Error::Resonance {
+            of: "X[2;2]".to_owned(),
+            q: 2.0 * k,
+            modes: vec![k],
+            distance,
+        },
+    }
 }
 
-impl LandauPoint<'_, '_> {
+impl LandauPoint {
     /// The wavenumber.
     pub fn k(&self) -> f64 {
         self.pair.k
@@ -178,7 +167,7 @@ impl LandauPoint<'_, '_> {
 
     /// How far the problems of X[0;2] and X[2;2] are from singularity.
     pub fn distances(&self) -> [f64; 2] {
-        [0, 1].map(|i| self.responses[i].distance(self.problem))
+        [0, 1].map(|i| self.responses[i].distance(&self.problem))
     }
 
     /// Σ |contribution to c2|: what its rounding errors are relative to.
@@ -205,65 +194,61 @@ impl LandauPoint<'_, '_> {
     }
 }
 
-/// A mode that takes part in products, with its jets on the grids of all balances.
+/// A mode that takes part in products, with its jets at the points of all balances.
 struct Factor {
     mode: Mode,
-    tables: Vec<(GridKind, JetTable)>,
+    tables: Vec<(Points, JetTable)>,
 }
 
 impl Factor {
     fn new(problem: &Problem, mode: Mode) -> Self {
         let jets = &problem.structure().form_jets;
-        let mut tables: Vec<(GridKind, JetTable)> = Vec::new();
-        for block in &problem.direct.layout.rows {
-            if !tables.iter().any(|(grid, _)| *grid == block.grid) {
-                tables.push((block.grid, mode.jets(problem, jets, block.grid)));
-            }
+        let groups = problem.direct.layout.groups().into_iter();
+        let tables = groups.map(|(points, _)| (points, mode.jets(problem, jets, points)));
+        Factor {
+            tables: tables.collect(),
+            mode,
         }
-        Factor { mode, tables }
     }
 
     fn conjugate(&self) -> Self {
         let tables = self.tables.iter();
         Factor {
             mode: self.mode.conjugate(),
-            tables: tables.map(|(grid, t)| (*grid, t.conjugate())).collect(),
+            tables: tables.map(|(at, t)| (*at, t.conjugate())).collect(),
         }
     }
 
-    fn on(&self, grid: GridKind) -> Option<&JetTable> {
-        let own = self.tables.iter().find(|(kind, _)| *kind == grid);
+    fn on(&self, points: Points) -> Option<&JetTable> {
+        let own = self.tables.iter().find(|(at, _)| *at == points);
         own.map(|(_, table)| table)
     }
 }
 
 /// `multiplicity` · N_d of d modes, in the balances and in the data of the boundary conditions, in the solver's basis.
-fn product(problem: &Problem, factors: &[&Factor], multiplicity: f64) -> Vec<C64> {
+fn product(problem: &Problem, factors: &[&Factor], multiplicity: f64) -> Turned {
     let degree = factors.len();
     let structure = problem.structure();
-    let mut right = vec![C64::new(0.0, 0.0); problem.direct.layout.size];
+    let mut right = Turned(vec![C64::new(0.0, 0.0); problem.direct.layout.size]);
     if degree > structure.order {
         return right;
     }
-    for (row, block) in problem.direct.layout.rows.iter().enumerate() {
+    for (row, block) in problem.direct.layout.rows.pairs() {
         if !structure.forms[degree - 2][row] {
             continue;
         }
-        let tables: Vec<&JetTable> = factors.iter().filter_map(|f| f.on(block.grid)).collect();
+        let tables: Vec<&JetTable> = factors.iter().filter_map(|f| f.on(block.points)).collect();
         let turn = problem.direct.row_factor(row) * multiplicity;
         for (i, c) in problem.nonlinear[row].iter().enumerate() {
             let arguments: [&[C64]; 3] =
                 std::array::from_fn(|a| tables.get(a).map_or(&[][..], |t| t.at(i)));
-            let value = problem.model.form(degree, row, c, &arguments[..degree]);
+            let value = problem.model().form(degree, row, c, &arguments[..degree]);
             right[block.offset + i] += turn * value;
         }
     }
     for (index, wall) in problem.direct.walls.iter().enumerate() {
         let terms = wall.nonlinear.iter().filter(|(m, _)| m.len() == degree);
-        let end = match wall.end {
-            End::Lower => GridKind::Lower,
-            End::Upper => GridKind::Upper,
-        };
+        let end = Points::end(wall.end);
         // 0 = W x + N(x): a row of L, and its data beside those of the balances.
         for (monomial, coefficient) in terms {
             let value = symmetric_product(problem, factors, monomial, end) * *coefficient;
@@ -275,12 +260,7 @@ fn product(problem: &Problem, factors: &[&Factor], multiplicity: f64) -> Vec<C64
 }
 
 /// 1/d! Σ over permutations of Π jets at one end.
-fn symmetric_product(
-    problem: &Problem,
-    factors: &[&Factor],
-    monomial: &[Jet],
-    end: GridKind,
-) -> C64 {
+fn symmetric_product(problem: &Problem, factors: &[&Factor], monomial: &[Jet], end: Points) -> C64 {
     fn sum(values: &[Vec<C64>], position: usize, used: u32) -> C64 {
         if position == values.len() {
             return C64::new(1.0, 0.0);

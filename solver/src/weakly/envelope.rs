@@ -1,8 +1,9 @@
 //! The envelope of one mode: ∂A/∂t = c0 A − i c0' ∂A/∂x − ½ c0'' ∂²A/∂x² + c2 |A|² A.
 
-use crate::dense::{Factorised, apply, bordered, dot};
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::numerics::Applied;
+use crate::numerics::dense::{Factorised, bordered, dot};
 use crate::problem::{Combination, Problem};
 use crate::spectrum::EigenPair;
 
@@ -25,21 +26,11 @@ impl Envelope {
     pub fn of(problem: &Problem, pair: &EigenPair) -> Result<Self> {
         let (k, c) = (pair.k, pair.c);
         let (x, y) = (&pair.right, &pair.left);
-        let operator = Combination {
-            mass: -c,
-            operator: C64::new(1.0, 0.0),
-            walls: 1.0,
+        let derivative = |of: Combination, order: u8, x: &[C64]| {
+            problem.direct.wavenumber_derivative(k, of, order).apply(x)
         };
-        let mass = Combination {
-            mass: C64::new(1.0, 0.0),
-            operator: C64::new(0.0, 0.0),
-            walls: 0.0,
-        };
-        let derivative = |of: Combination, order: i32, x: &[C64]| {
-            let matrix = problem.wavenumber_derivative::<C64>(k, of, order);
-            apply(matrix.as_ref(), x)
-        };
-        let plain = problem.mass::<C64>(k);
+        let (operator, mass) = (Combination::at_eigenvalue(c), Combination::MASS);
+        let plain = problem.direct.mass::<C64>(k);
         let mass_x = plain.apply(x);
         let below = dot(y, &mass_x);
         let first = derivative(operator, 1, x);

@@ -5,10 +5,14 @@
 
 use super::system::{AmplitudeSystem, power};
 use crate::model::C64;
+use crate::numerics::{Failure, Linearised, Newton, System};
 use nalgebra::{DMatrix, DVector};
 
-/// Newton steps from one start.
-const STEPS: usize = 60;
+/// From one start.
+const METHOD: Newton = Newton {
+    most_steps: 60,
+    least_part: 1.0,
+};
 /// Starts in all, at most.
 const MOST_STARTS: usize = 3000;
 /// Phases of each amplitude that are tried.
@@ -212,77 +216,141 @@ fn starts(system: &AmplitudeSystem, present: &[usize]) -> Vec<Vec<C64>> {
     (0..total).map(start).collect()
 }
 
-/// Newton's method, with steps of least size where phases are free; the state and its frequencies.
-fn newton(
-    system: &AmplitudeSystem,
-    present: &[usize],
-    symmetries: &[Vec<f64>],
-    mut z: Vec<C64>,
-    least: f64,
-) -> Option<(Vec<C64>, Vec<f64>)> {
-    let (m, d) = (present.len(), symmetries.len());
-    let mut nu = best_frequencies(system, present, symmetries, &z);
-    let start = z.iter().map(|z| z.norm()).fold(0.0, f64::max);
-    let frequencies = |nu: &[f64]| -> Vec<f64> {
-        let own = |j: usize| nu.iter().zip(symmetries).map(|(n, w)| n * w[j]).sum();
-        (0..system.modes()).map(own).collect()
-    };
-    for step in 0..STEPS {
-        let omega = frequencies(&nu);
+/// dz_j/dt = i Σ_a ν_a w_aj z_j for the modes present, in (Re z, Im z, …, ν).
+struct Standing<'a> {
+    system: &'a AmplitudeSystem,
+    present: &'a [usize],
+    symmetries: &'a [Vec<f64>],
+    /// Between these sizes a state is looked for.
+    sizes: std::ops::Range<f64>,
+}
+
+/// What is known at one point: rates with the terms that they are the sums of.
+struct Rates {
+    z: Vec<C64>,
+    omega: Vec<f64>,
+    /// Σ |terms| of each equation present.
+    terms: Vec<f64>,
+}
+
+impl Standing<'_> {
+    /// The amplitudes of all modes.
+    fn amplitudes(&self, x: &[f64]) -> Vec<C64> {
+        let mut z = vec![C64::new(0.0, 0.0); self.system.modes()];
+        for (a, &j) in self.present.iter().enumerate() {
+            z[j] = C64::new(x[2 * a], x[2 * a + 1]);
+        }
+        z
+    }
+
+    /// Σ_a ν_a w_aj of all modes.
+    fn frequencies(&self, x: &[f64]) -> Vec<f64> {
+        let nu = &x[2 * self.present.len()..];
+        let own = |j: usize| nu.iter().zip(self.symmetries).map(|(n, w)| n * w[j]).sum();
+        (0..self.system.modes()).map(own).collect()
+    }
+}
+
+impl System for Standing<'_> {
+    type Jacobian = DMatrix<f64>;
+    type Known = Rates;
+    type Error = Failure;
+
+    fn linearise(&mut self, x: &[f64]) -> Result<Option<Linearised<Self>>, Failure> {
+        let (system, m) = (self.system, self.present.len());
+        let (z, omega) = (self.amplitudes(x), self.frequencies(x));
         let rates = system.rates(&z);
-        let residual: Vec<C64> = present
-            .iter()
-            .map(|&j| rates[j] - C64::new(0.0, omega[j]) * z[j])
-            .collect();
-        let terms = |j: usize| -> f64 {
-            let terms = system.equations[j].iter();
-            terms.map(|t| (t.g * power(&t.monomial, &z)).norm()).sum()
-        };
-        let converged = present
-            .iter()
-            .zip(&residual)
-            .all(|(&j, r)| r.norm() <= TOLERANCE * terms(j));
-        if converged && step > 0 {
-            let largest = z.iter().map(|z| z.norm()).fold(0.0, f64::max);
-            let genuine = |&j: &usize| z[j].norm() > 1e-5 * largest;
-            let rate = present.iter().map(|&j| terms(j) / z[j].norm());
-            let still = STILL * rate.fold(0.0, f64::max);
-            let settled = |omega: f64| if omega.abs() <= still { 0.0 } else { omega };
-            let omega = omega.into_iter().map(settled).collect();
-            return present.iter().all(genuine).then_some((z, omega));
+        let mut residual = Vec::with_capacity(2 * m);
+        for &j in self.present {
+            let left = rates[j] - C64::new(0.0, omega[j]) * z[j];
+            residual.extend([left.re, left.im]);
         }
         let [slopes, conjugate] = system.slopes(&z);
-        let mut jacobian = DMatrix::<f64>::zeros(2 * m, 2 * m + d);
-        for (a, &i) in present.iter().enumerate() {
-            for (b, &j) in present.iter().enumerate() {
+        let mut jacobian = DMatrix::<f64>::zeros(2 * m, x.len());
+        for (a, &i) in self.present.iter().enumerate() {
+            for (b, &j) in self.present.iter().enumerate() {
                 let own = slopes[i][j] - C64::new(0.0, if i == j { omega[i] } else { 0.0 });
                 fill(&mut jacobian, (a, b), own, conjugate[i][j]);
             }
-            for (s, symmetry) in symmetries.iter().enumerate() {
+            for (s, symmetry) in self.symmetries.iter().enumerate() {
                 let column = C64::new(0.0, -symmetry[i]) * z[i];
                 jacobian[(2 * a, 2 * m + s)] = column.re;
                 jacobian[(2 * a + 1, 2 * m + s)] = column.im;
             }
         }
-        let right = DVector::from_fn(2 * m, |r, _| match r % 2 {
-            0 => -residual[r / 2].re,
-            _ => -residual[r / 2].im,
-        });
-        let solved = jacobian.svd(true, true);
-        let floor = 1e-12 * solved.singular_values.max();
-        let change = solved.solve(&right, floor).ok()?;
-        for (a, &j) in present.iter().enumerate() {
-            z[j] += C64::new(change[2 * a], change[2 * a + 1]);
-        }
-        for (s, nu) in nu.iter_mut().enumerate() {
-            *nu += change[2 * m + s];
-        }
-        let size = z.iter().map(|z| z.norm()).fold(0.0, f64::max);
-        if !size.is_finite() || size > 1e3 * start || size < least {
-            return None;
-        }
+        let terms = |&j: &usize| -> f64 {
+            let terms = system.equations[j].iter();
+            terms.map(|t| (t.g * power(&t.monomial, &z)).norm()).sum()
+        };
+        let terms = self.present.iter().map(terms).collect();
+        Ok(Some(Linearised {
+            residual,
+            jacobian,
+            known: Rates { z, omega, terms },
+        }))
     }
-    None
+
+    fn admits(&self, x: &[f64]) -> bool {
+        let size = self
+            .amplitudes(x)
+            .iter()
+            .map(|z| z.norm())
+            .fold(0.0, f64::max);
+        self.sizes.contains(&size)
+    }
+
+    /// Of least size: phases that are free stay where they are.
+    fn step(&mut self, _: &[f64], at: &Linearised<Self>) -> Result<Option<Vec<f64>>, Failure> {
+        let right = -DVector::from_column_slice(&at.residual);
+        let solved = at.jacobian.clone().svd(true, true);
+        let floor = 1e-12 * solved.singular_values.max();
+        let step = solved.solve(&right, floor).ok();
+        Ok(step.map(|step| step.iter().copied().collect()))
+    }
+
+    fn is_last(&self, _: &[f64], _: &[f64]) -> bool {
+        false
+    }
+
+    fn is_solution(&self, _: &[f64], at: &Linearised<Self>) -> bool {
+        let residuals = at.residual.chunks(2).zip(&at.known.terms);
+        let small = |(r, terms): (&[f64], &f64)| r[0].hypot(r[1]) <= TOLERANCE * terms;
+        residuals.into_iter().all(small)
+    }
+}
+
+/// The state from a start, with its frequencies.
+fn newton(
+    system: &AmplitudeSystem,
+    present: &[usize],
+    symmetries: &[Vec<f64>],
+    start: Vec<C64>,
+    least: f64,
+) -> Option<(Vec<C64>, Vec<f64>)> {
+    let largest = |z: &[C64]| z.iter().map(|z| z.norm()).fold(0.0, f64::max);
+    let mut standing = Standing {
+        system,
+        present,
+        symmetries,
+        sizes: least..1e3 * largest(&start),
+    };
+    let mut x: Vec<f64> = present
+        .iter()
+        .flat_map(|&j| [start[j].re, start[j].im])
+        .collect();
+    x.extend(best_frequencies(system, present, symmetries, &start));
+    let (_, at) = METHOD.solve(&mut standing, x).ok()?;
+    let Rates { z, omega, terms } = at.known;
+    let most = largest(&z);
+    let genuine = |&j: &usize| z[j].norm() > 1e-5 * most;
+    let rates = present
+        .iter()
+        .zip(&terms)
+        .map(|(&j, terms)| terms / z[j].norm());
+    let still = STILL * rates.fold(0.0, f64::max);
+    let settled = |omega: f64| if omega.abs() <= still { 0.0 } else { omega };
+    let found = present.iter().all(genuine);
+    found.then(|| (z.clone(), omega.into_iter().map(settled).collect()))
 }
 
 /// The ν that come nearest to Im (dz_j/dt / z_j) = Σ_a ν_a w_aj.

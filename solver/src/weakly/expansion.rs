@@ -12,12 +12,14 @@ use super::forcing::Forcing;
 use super::mode::Mode;
 use super::response::{Multiplier, Question, Response, arithmetic};
 use super::system::{AmplitudeSystem, Term};
-use crate::dense::dot;
 use crate::error::{Error, Result};
 use crate::model::C64;
-use crate::problem::Problem;
+use crate::numerics::Applied;
+use crate::numerics::dense::dot;
+use crate::problem::{Problem, Profile, Turned};
 use crate::series::{Arithmetic, Monomial, Monomials};
 use crate::spectrum::EigenPair;
+use std::sync::Arc;
 
 /// Wavenumbers that differ by a smaller part of the largest are one.
 const SAME: f64 = 1e-9;
@@ -30,15 +32,15 @@ pub struct CriticalMode {
     /// φ, normalised.
     pub profile: Mode,
     /// M0 φ, in the solver's basis.
-    column: Vec<C64>,
+    column: Turned,
     /// M0ᴴ ψ
-    row: Vec<C64>,
+    row: Turned,
 }
 
 /// The modes and coefficients found so far.
-pub struct Expansion<'p, 'm> {
+pub struct Expansion {
     /// The collocated problem.
-    pub problem: &'p Problem<'m>,
+    pub problem: Arc<Problem>,
     /// The modes with amplitudes.
     pub modes: Vec<CriticalMode>,
     /// Their equations, as far as they are known.
@@ -53,29 +55,29 @@ pub struct Expansion<'p, 'm> {
     responses: Vec<(Monomial, Response)>,
 }
 
-impl<'p, 'm> Expansion<'p, 'm> {
+impl Expansion {
     /// The modes alone: order 1.
     ///
     /// # Errors
     /// A mode that the spec's normalisation does not fit, two modes that are one.
-    pub fn new(problem: &'p Problem<'m>, pairs: Vec<EigenPair>) -> Result<Self> {
+    pub fn new(problem: &Arc<Problem>, pairs: Vec<EigenPair>) -> Result<Self> {
         let rates: Vec<C64> = pairs.iter().map(|pair| pair.c).collect();
         distinct(&pairs)?;
         let arithmetic = arithmetic(problem, &rates);
         let mut modes = Vec::new();
         for pair in pairs {
             let profile = fundamental(problem, &pair)?;
-            let mass = problem.mass::<C64>(pair.k);
+            let mass = problem.direct.mass::<C64>(pair.k);
             modes.push(CriticalMode {
-                column: mass.apply(&problem.solver_basis(&profile.values)),
-                row: mass.apply_adjoint(&pair.left),
+                column: Turned(mass.apply(&problem.direct.turned(&profile.values))),
+                row: Turned(mass.apply_adjoint(&pair.left)),
                 profile,
                 pair,
             });
         }
         let k = modes.first().map_or(0.0, |mode| mode.pair.k);
         let mut expansion = Expansion {
-            problem,
+            problem: problem.clone(),
             system: AmplitudeSystem::linear(&rates),
             multipliers: Vec::new(),
             arithmetic,
@@ -96,7 +98,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
     ///
     /// # Errors
     /// As [`Expansion::new`], and a singular problem: resonance.
-    pub fn to(problem: &'p Problem<'m>, pairs: Vec<EigenPair>, order: usize) -> Result<Self> {
+    pub fn to(problem: &Arc<Problem>, pairs: Vec<EigenPair>, order: usize) -> Result<Self> {
         let mut expansion = Expansion::new(problem, pairs)?;
         while expansion.order() < order {
             expansion.advance()?;
@@ -242,17 +244,12 @@ impl<'p, 'm> Expansion<'p, 'm> {
         degree: usize,
         posed: &[Posed],
         wanted: &[usize],
-    ) -> Vec<(Posed, Vec<C64>)> {
+    ) -> Vec<(Posed, Turned)> {
         self.forcing.begin(&self.monomials, degree, wanted);
         let known = |(index, posed): (usize, &Posed)| {
             let rate = self.known_rate(&posed.alpha)?;
-            let mode = Mode {
-                q: self.wavenumber(&posed.alpha),
-                values: vec![C64::new(0.0, 0.0); rate.len()],
-                rate,
-                drift: Vec::new(),
-                uniform: Vec::new(),
-            };
+            let still = Profile::zero(rate.len());
+            let mode = Mode::new(self.wavenumber(&posed.alpha), still, rate);
             let mode = if posed.mirrored {
                 mode.conjugate()
             } else {
@@ -263,7 +260,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let known: Vec<Option<Mode>> = posed.iter().enumerate().map(known).collect();
         let found = self
             .forcing
-            .outputs(self.problem, &self.monomials, degree, &known);
+            .outputs(&self.problem, &self.monomials, degree, &known);
         let right = |&index: &usize| {
             let right = match posed[index].mirrored {
                 true => found[index].conjugate_right(),
@@ -274,7 +271,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
         wanted.iter().map(right).collect()
     }
 
-    fn solve(&mut self, posed: &Posed, forcing: Vec<C64>) -> Result<Mode> {
+    fn solve(&mut self, posed: &Posed, forcing: Turned) -> Result<Mode> {
         let alpha = &posed.alpha;
         let borders = posed.resonant.iter().map(|&j| {
             let mode = &self.modes[j];
@@ -291,16 +288,14 @@ impl<'p, 'm> Expansion<'p, 'm> {
             borders: &borders,
         };
         let response = question
-            .answer(self.problem)
+            .answer(&self.problem)
             .ok_or_else(|| self.singular(alpha))?;
         let mut mode = response.mode.clone();
         if let Some(rate) = self.known_rate(alpha) {
-            mode.rate.iter_mut().zip(rate).for_each(|(r, k)| *r += k);
+            mode.rate.add(C64::new(1.0, 0.0), &rate);
         }
         for (&j, &g) in posed.resonant.iter().zip(&response.coefficients) {
-            let profile = &self.modes[j].profile.values;
-            let rates = mode.rate.iter_mut().zip(profile);
-            rates.for_each(|(r, v)| *r += g * v);
+            mode.rate.add(g, &self.modes[j].profile.values);
             let monomial = alpha.clone();
             self.system.equations[j].push(Term { monomial, g });
         }
@@ -311,8 +306,8 @@ impl<'p, 'm> Expansion<'p, 'm> {
     }
 
     /// Σ X_γ d/dt of lower monomials γ that gives z^p z̄^s through the nonlinear terms of the amplitude equations.
-    fn known_rate(&self, alpha: &Monomial) -> Option<Vec<C64>> {
-        let mut rate: Option<Vec<C64>> = None;
+    fn known_rate(&self, alpha: &Monomial) -> Option<Profile> {
+        let mut rate: Option<Profile> = None;
         for degree in 2..alpha.degree() {
             let found = self
                 .monomials
@@ -323,11 +318,10 @@ impl<'p, 'm> Expansion<'p, 'm> {
                 for gamma in [stored.clone(), stored.conjugate()] {
                     let factor = self.rate_factor(alpha, &gamma);
                     if factor != C64::new(0.0, 0.0) {
-                        let conjugate = gamma != *stored;
-                        let rate =
-                            rate.get_or_insert_with(|| vec![C64::new(0.0, 0.0); mode.values.len()]);
-                        for (r, v) in rate.iter_mut().zip(&mode.values) {
-                            *r += factor * if conjugate { v.conj() } else { *v };
+                        let rate = rate.get_or_insert_with(|| Profile::zero(mode.values.len()));
+                        match gamma == *stored {
+                            true => rate.add(factor, &mode.values),
+                            false => rate.add(factor, &mode.values.conjugate()),
                         }
                     }
                     if stored.is_real() {
@@ -368,7 +362,7 @@ impl<'p, 'm> Expansion<'p, 'm> {
         let modes = self.profiles[degree - 1].iter().cloned().map(Some);
         let modes: Vec<Option<Mode>> = modes.collect();
         self.forcing
-            .complete(self.problem, &self.monomials, degree, &modes);
+            .complete(&self.problem, &self.monomials, degree, &modes);
     }
 
     /// Every solved problem's distance from singularity.
@@ -377,29 +371,26 @@ impl<'p, 'm> Expansion<'p, 'm> {
             monomial: monomial.clone(),
             q: self.wavenumber(monomial),
             shift: self.shift(monomial),
-            distance: response.distance(self.problem),
+            distance: response.distance(&self.problem),
         };
         self.responses.iter().map(distance).collect()
     }
 
     fn singular(&self, alpha: &Monomial) -> Error {
-        let q = self.wavenumber(alpha);
-        let advice = if q == 0.0 {
-            "a mean is left open: the block `mean` accepts `gauge` for a field that is determined up to a constant and \
-             `conserved` for an integral that does not change"
-                .to_owned()
-        } else {
-            let include = self.modes.iter().map(|mode| mode.pair.k).chain([q]);
-            let include: Vec<String> = include.map(|k| format!("--mode k={k}")).collect();
-            format!(
-                "a resonance with a mode at k = {q}, which wants an amplitude of its own: `landau amplitudes` with {}",
-                include.join(" ")
-            )
-        };
-        Error::computation(format!(
-            "the problem for the coefficient of {} is singular, {advice}",
-            alpha.name()
-        ))
+        let (q, of) = (
+            self.wavenumber(alpha),
+            format!("the coefficient of {}", alpha.name()),
+        );
+        let distance = None;
+        if q == 0.0 {
+            return Error::OpenMean { of, distance };
+        }
+        Error::Resonance {
+            of,
+            q,
+            modes: self.modes.iter().map(|mode| mode.pair.k).collect(),
+            distance,
+        }
     }
 }
 

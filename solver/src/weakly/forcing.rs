@@ -4,11 +4,11 @@
 //! M ∂t X − R the coefficient of z^p z̄^s, with X_ps itself left out, is minus G_ps.
 
 use super::mode::Mode;
-use crate::collocation::{Grid, GridKind};
 use crate::error::{Error, Result};
-use crate::model::{C64, End, Jet, Kernel, KernelId, ResidualId, evaluate};
-use crate::problem::Problem;
+use crate::model::{C64, End, Id, Jet, Kernel, KernelId, ResidualId, evaluate};
+use crate::problem::{Problem, Turned};
 use crate::series::{Arithmetic, Levels, Monomials, Program};
+use crate::space::Points;
 
 /// The residuals prepared, with all coefficients found so far.
 pub(super) struct Forcing {
@@ -18,7 +18,7 @@ pub(super) struct Forcing {
 
 /// Rows of the collocated problem that share their points.
 struct Group {
-    grid: GridKind,
+    points: Points,
     program: Program,
     levels: Levels,
     rows: Vec<Row>,
@@ -39,7 +39,7 @@ impl Forcing {
     /// A model without residual.
     pub fn new(problem: &Problem, k: f64, arithmetic: Arithmetic) -> Result<Self> {
         let structure = problem.structure();
-        let model = problem.model;
+        let model = problem.model();
         let jets = structure.residual_jets.clone();
         let missing = || Error::computation("the model has no unexpanded residual");
         let balances = model.residual(ResidualId::Balances).ok_or_else(missing)?;
@@ -50,16 +50,8 @@ impl Forcing {
         };
         let layout = &problem.direct.layout;
         let mut groups: Vec<Group> = Vec::new();
-        for block in &layout.rows {
-            if groups.iter().any(|g| g.grid == block.grid) {
-                continue;
-            }
-            let same = layout.rows.iter().enumerate();
-            let same: Vec<usize> = same
-                .filter(|(_, b)| b.grid == block.grid)
-                .map(|(row, _)| row)
-                .collect();
-            let states = prepare.states(block.grid);
+        for (points, same) in layout.groups() {
+            let states = prepare.states(points);
             let divisors = states
                 .iter()
                 .map(|state| evaluate(model, KernelId::Divisors, state));
@@ -68,13 +60,14 @@ impl Forcing {
                 offset: layout.rows[row].offset,
                 factors: divisors
                     .iter()
-                    .map(|d| problem.direct.row_factor(row) / -d[row])
+                    .map(|d| problem.direct.row_factor(row) / -d[row.index()])
                     .collect(),
             });
-            groups.push(prepare.group(balances, &same, states, block.grid, rows.collect()));
+            let outputs: Vec<usize> = same.iter().map(|row| row.index()).collect();
+            groups.push(prepare.group(balances, &outputs, states, points, rows.collect()));
         }
         let case = ResidualId::Conditions(problem.base.case);
-        for (end, grid) in [(End::Lower, GridKind::Lower), (End::Upper, GridKind::Upper)] {
+        for end in End::BOTH {
             let walls = problem.direct.walls.iter().enumerate();
             let walls: Vec<usize> = walls
                 .filter(|(_, wall)| wall.end == end)
@@ -88,8 +81,9 @@ impl Forcing {
                 offset: layout.walls + index,
                 factors: vec![problem.direct.wall_factor(&problem.direct.walls[index])],
             });
-            let states = prepare.states(grid);
-            groups.push(prepare.group(conditions, &walls, states, grid, rows.collect()));
+            let points = Points::end(end);
+            let states = prepare.states(points);
+            groups.push(prepare.group(conditions, &walls, states, points, rows.collect()));
         }
         Ok(Forcing { groups, jets })
     }
@@ -167,31 +161,29 @@ impl PhysicalForcing {
     }
 
     /// G in the solver's basis.
-    pub fn right(&self) -> Vec<C64> {
+    pub fn right(&self) -> Turned {
         let pairs = self.values.iter().zip(&self.factors);
-        pairs.map(|(v, f)| v * f).collect()
+        Turned(pairs.map(|(v, f)| v * f).collect())
     }
 
     /// G of the conjugate monomial.
-    pub fn conjugate_right(&self) -> Vec<C64> {
+    pub fn conjugate_right(&self) -> Turned {
         let pairs = self.values.iter().zip(&self.factors);
-        pairs.map(|(v, f)| v.conj() * f).collect()
+        Turned(pairs.map(|(v, f)| v.conj() * f).collect())
     }
 }
 
-struct Preparation<'a, 'm> {
-    problem: &'a Problem<'m>,
+struct Preparation<'a> {
+    problem: &'a Problem,
     k: f64,
     odd: Option<Vec<bool>>,
 }
 
-impl Preparation<'_, '_> {
-    fn states(&self, grid: GridKind) -> Vec<Vec<f64>> {
-        let (base, model) = (self.problem.base, self.problem.model);
-        let nodes = Grid::new(grid).nodes;
-        nodes
-            .iter()
-            .map(|&xi| base.point(model, xi, self.k))
+impl Preparation<'_> {
+    fn states(&self, points: Points) -> Vec<Vec<f64>> {
+        let places = self.problem.space().places(points).into_iter();
+        places
+            .map(|place| self.problem.base.at(place, self.k))
             .collect()
     }
 
@@ -200,7 +192,7 @@ impl Preparation<'_, '_> {
         kernel: &Kernel,
         outputs: &[usize],
         states: Vec<Vec<f64>>,
-        grid: GridKind,
+        points: Points,
         rows: Vec<Row>,
     ) -> Group {
         let structure = self.problem.structure();
@@ -211,7 +203,7 @@ impl Preparation<'_, '_> {
         let base: Vec<Vec<f64>> = states.iter().map(jets).collect();
         let program = Program::new(kernel, outputs, &states[0], self.odd.as_deref());
         Group {
-            grid,
+            points,
             levels: Levels::new(&program, &states, &base),
             read: program.jets(),
             program,
@@ -223,7 +215,7 @@ impl Preparation<'_, '_> {
 /// Which jets are i times real where every mode is its own mirror image.
 fn odd_jets(problem: &Problem, jets: &[Jet], arithmetic: Arithmetic) -> Option<Vec<bool>> {
     let parity = problem.structure().parity.as_ref()?;
-    let odd = |jet: &Jet| parity.fields[usize::from(jet.field)] != (jet.x % 2 == 1);
+    let odd = |jet: &Jet| parity.fields[jet.of] != (jet.x % 2 == 1);
     (arithmetic == Arithmetic::Real).then(|| jets.iter().map(odd).collect())
 }
 
@@ -236,25 +228,19 @@ impl Group {
         modes: &[Option<Mode>],
         chosen: impl Fn(Jet) -> bool,
     ) -> Vec<Vec<Option<Vec<C64>>>> {
+        let read: Vec<usize> = self
+            .read
+            .iter()
+            .copied()
+            .filter(|&i| chosen(jets[i]))
+            .collect();
+        let wanted: Vec<Jet> = read.iter().map(|&index| jets[index]).collect();
         let row = |mode: &Option<Mode>| {
             let Some(mode) = mode else { return Vec::new() };
             let mut row = vec![None; jets.len()];
-            // Jets that differ in ∂x alone share one derivative of the profile.
-            let mut derived: Vec<(Jet, Vec<C64>)> = Vec::new();
-            for &index in self.read.iter().filter(|&&index| chosen(jets[index])) {
-                let jet = jets[index];
-                let profile = Jet {
-                    x: 0,
-                    absx: 0,
-                    ..jet
-                };
-                let known = derived.iter().position(|(other, _)| *other == profile);
-                let known = known.unwrap_or_else(|| {
-                    derived.push((profile, mode.profile(problem, profile, self.grid)));
-                    derived.len() - 1
-                });
-                let factor = mode.symbol(jet);
-                row[index] = Some(derived[known].1.iter().map(|v| factor * v).collect());
+            let columns = mode.columns(problem, &wanted, self.points);
+            for (&index, column) in read.iter().zip(columns) {
+                row[index] = Some(column);
             }
             row
         };

@@ -1,10 +1,10 @@
 //! The normalisation that the spec asks for, and the rule that fixes the phase.
 
-use crate::collocation::{Grid, GridKind, clenshaw_curtis};
 use crate::error::{Error, Result};
 use crate::model::layout::read_measure;
-use crate::model::{C64, KernelId, Measure, evaluate};
-use crate::problem::{Problem, quarter_turn};
+use crate::model::{C64, FieldId, KernelId, Measure, evaluate};
+use crate::problem::{Problem, Profile, Turn};
+use crate::space::Place;
 
 /// Sizes of a fundamental whose powers double precision can hold.
 const SIZES: std::ops::Range<f64> = 1e-60..1e60;
@@ -17,9 +17,9 @@ const SIZES: std::ops::Range<f64> = 1e-60..1e60;
 ///
 /// # Errors
 /// A mode whose normalising quantity vanishes.
-pub fn normalise(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
+pub fn normalise(problem: &Problem, k: f64, values: &Profile) -> Result<C64> {
     let factor = unchecked(problem, k, values)?;
-    let size = factor.norm() * values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let size = factor.norm() * values.largest();
     if SIZES.contains(&size) {
         return Ok(factor);
     }
@@ -30,10 +30,10 @@ pub fn normalise(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
     )))
 }
 
-fn unchecked(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
+fn unchecked(problem: &Problem, k: f64, values: &Profile) -> Result<C64> {
     let amplitude = &problem.structure().amplitude;
-    let state = problem.base.point(problem.model, 0.0, k);
-    let out = evaluate(problem.model, KernelId::Amplitude, &state);
+    let state = problem.base.at(Place::MIDDLE, k);
+    let out = evaluate(problem.model(), KernelId::Amplitude, &state);
     let (wanted, place) = match read_measure(amplitude, &out) {
         Measure::Point { value, place } => (value.abs(), place),
         Measure::Integral { value, .. } => (value, 0.0),
@@ -44,11 +44,11 @@ fn unchecked(problem: &Problem, k: f64, values: &[C64]) -> Result<C64> {
             return Err(vanishes(problem));
         }
         let block = &problem.direct.layout.columns[field];
-        let own = &values[block.offset..][..block.len];
+        let own = block.of(values);
         if value.norm() <= 1e-12 * own.iter().map(|v| v.norm()).fold(0.0, f64::max) {
             return Err(vanishes(problem));
         }
-        return Ok(turn(problem, field) * value.conj() / value.norm_sqr() * wanted);
+        return Ok(phase_of(problem, field) * value.conj() / value.norm_sqr() * wanted);
     }
     let square = weighted_square(problem, values);
     if !(square > 0.0 && wanted > 0.0) {
@@ -64,28 +64,19 @@ fn vanishes(problem: &Problem) -> Error {
     ))
 }
 
-fn point_value(problem: &Problem, values: &[C64], field: usize, place: f64) -> C64 {
-    let block = &problem.direct.layout.columns[field];
-    let values = &values[block.offset..block.offset + block.len];
-    if problem.resolution == 0 {
-        return values[0];
-    }
-    let xi = -1.0 + (place - problem.base.lower) * problem.base.scale();
-    let row = Grid::new(block.grid).interpolate_to(&[xi]);
-    values
-        .iter()
-        .enumerate()
-        .map(|(j, v)| v * row[(0, j)])
-        .sum()
+fn point_value(problem: &Problem, values: &Profile, field: FieldId, place: f64) -> C64 {
+    let (space, block) = (problem.space(), &problem.direct.layout.columns[field]);
+    let own = block.of(values);
+    space.interpolated(block.points, own, &[space.place(place)])[0]
 }
 
 /// ∫ Σ w|q|² dy
-fn weighted_square(problem: &Problem, values: &[C64]) -> f64 {
+fn weighted_square(problem: &Problem, values: &Profile) -> f64 {
     let fields = &problem.structure().amplitude.weighted;
     let mut square = 0.0;
     for (&field, gram) in fields.iter().zip(&problem.gram) {
         let block = &problem.direct.layout.columns[field];
-        let own = &values[block.offset..block.offset + block.len];
+        let own = block.of(values);
         for (j, y) in own.iter().enumerate() {
             let column = gram.col(j);
             let product: C64 = own
@@ -99,40 +90,21 @@ fn weighted_square(problem: &Problem, values: &[C64]) -> f64 {
     square
 }
 
-/// A grid on which products of two profiles integrate exactly.
-pub fn quadrature_grid(problem: &Problem) -> GridKind {
-    match problem.resolution {
-        0 => GridKind::Point,
-        m => GridKind::Lobatto(4 * m + 1),
-    }
-}
-
-/// Weights of ∫ dy on that grid.
-pub fn quadrature_weights(problem: &Problem, grid: GridKind) -> Vec<f64> {
-    match grid {
-        GridKind::Lobatto(n) => {
-            let half = 0.5 * (problem.base.upper - problem.base.lower);
-            clenshaw_curtis(n).into_iter().map(|w| w * half).collect()
-        }
-        _ => vec![1.0],
-    }
-}
-
-fn phase(problem: &Problem, values: &[C64]) -> C64 {
-    for (field, block) in problem.direct.layout.columns.iter().enumerate() {
-        let own = &values[block.offset..block.offset + block.len];
+fn phase(problem: &Problem, values: &Profile) -> C64 {
+    for (field, block) in problem.direct.layout.columns.pairs() {
+        let own = block.of(values);
         let Some(largest) = own.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())) else {
             continue;
         };
-        if largest.norm() > 1e-9 * values.iter().map(|v| v.norm()).fold(0.0, f64::max) {
-            return turn(problem, field) * largest.conj() / largest.norm();
+        if largest.norm() > 1e-9 * values.largest() {
+            return phase_of(problem, field) * largest.conj() / largest.norm();
         }
     }
     C64::new(1.0, 0.0)
 }
 
 /// i for a field that is odd in the mirror.
-fn turn(problem: &Problem, field: usize) -> C64 {
+fn phase_of(problem: &Problem, field: FieldId) -> C64 {
     let parity = problem.structure().parity.as_ref();
-    quarter_turn(usize::from(parity.is_some_and(|p| p.fields[field])))
+    Turn::of(parity.is_some_and(|p| p.fields[field])).factor()
 }

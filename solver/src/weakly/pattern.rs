@@ -3,10 +3,9 @@
 use super::cubic::LandauPoint;
 use super::expansion::Expansion;
 use super::mode::Mode;
-use crate::collocation::{Grid, GridKind};
 use crate::error::Result;
 use crate::model::C64;
-use crate::problem::Problem;
+use crate::model::{FieldId, Jet, Table};
 
 /// Fields over a rectangle of the (x, y)-plane; arrays are `[field][y][x]`.
 pub struct Pattern {
@@ -17,13 +16,13 @@ pub struct Pattern {
     /// A
     pub amplitude: f64,
     /// Of the fields.
-    pub names: Vec<String>,
+    pub names: Table<FieldId, String>,
     /// X⁰, `[field][y]`
-    pub base: Vec<Vec<f64>>,
+    pub base: Table<FieldId, Vec<f64>>,
     /// X⁰ + A X[1;1] e^{ikx} + c.c., P (4.5)
-    pub linear: Vec<Vec<Vec<f64>>>,
+    pub linear: Table<FieldId, Vec<Vec<f64>>>,
     /// X⁰ and all modes through third order, P (4.4)
-    pub nonlinear: Vec<Vec<Vec<f64>>>,
+    pub nonlinear: Table<FieldId, Vec<Vec<f64>>>,
 }
 
 /// The order of the expansion that is drawn.
@@ -45,60 +44,47 @@ pub struct Window {
 /// # Errors
 /// A resonance at third order.
 pub fn pattern(point: &LandauPoint, amplitude: f64, window: Window) -> Result<Pattern> {
-    let expansion = Expansion::to(point.problem, vec![point.pair.clone()], ORDER)?;
-    let (problem, k) = (point.problem, point.k());
-    let (model, structure) = (problem.model, problem.structure());
-    let heights = match problem.resolution {
-        0 => 1,
-        _ => window.rows.max(2),
-    };
-    let places: Vec<f64> = (0..heights)
-        .map(|j| match heights {
-            1 => 0.0,
-            _ => -1.0 + 2.0 * j as f64 / (heights - 1) as f64,
-        })
-        .collect();
+    let expansion = Expansion::to(&point.problem, vec![point.pair.clone()], ORDER)?;
+    let (problem, k) = (point.problem.as_ref(), point.k());
+    let (structure, space) = (problem.structure(), problem.space());
+    let places = space.evenly(window.rows.max(2));
     let length = window.wavelengths * 2.0 * std::f64::consts::PI / k;
     let columns = window.columns.max(2);
     let x: Vec<f64> = (0..columns)
         .map(|i| length * i as f64 / (columns - 1) as f64)
         .collect();
-    let profiles = structure.profiles();
-    let base: Vec<Vec<f64>> = (0..profiles)
-        .map(|field| {
-            let position = structure.base_position(field, 0);
-            let at = |xi: &f64| problem.base.point(model, *xi, k)[position];
-            places.iter().map(at).collect()
-        })
-        .collect();
+    let states: Vec<Vec<f64>> = places.iter().map(|&at| problem.base.at(at, k)).collect();
+    let profile = |field: FieldId| -> Vec<f64> {
+        let value = |state: &Vec<f64>| structure.base_value(state, field, 0);
+        states.iter().map(value).collect()
+    };
+    let base: Table<FieldId, Vec<f64>> = structure.profiles().map(profile).collect();
     let modes = expansion.known();
-    let sum = |order: usize| {
+    let sum = |order: usize| -> Table<FieldId, Vec<Vec<f64>>> {
         let modes = modes
             .iter()
             .filter(|(monomial, _)| monomial.degree() <= order);
         let modes: Vec<(f64, &Mode)> = modes
             .map(|(monomial, mode)| (amplitude.powi(monomial.degree() as i32), mode))
             .collect();
-        let fields = base.iter().enumerate();
-        fields
-            .map(|(field, base)| {
-                let profile = |&(size, mode): &(f64, &Mode)| {
-                    let profile = profile(problem, mode, field, &places);
-                    (mode.q, profile.into_iter().map(|v| v * size).collect())
-                };
-                superpose(base, &modes.iter().map(profile).collect::<Vec<_>>(), &x)
-            })
-            .collect()
+        let field = |(field, base): (FieldId, &Vec<f64>)| {
+            let profile = |&(size, mode): &(f64, &Mode)| {
+                let profile = mode.at(problem, Jet::value(field), &places);
+                (mode.q, profile.into_iter().map(|v| v * size).collect())
+            };
+            superpose(base, &modes.iter().map(profile).collect::<Vec<_>>(), &x)
+        };
+        base.pairs().map(field).collect()
     };
     Ok(Pattern {
         amplitude,
         linear: sum(1),
         nonlinear: sum(ORDER),
-        names: structure.fields[..profiles]
-            .iter()
-            .map(|f| f.name.clone())
+        names: structure
+            .profiles()
+            .map(|field| structure.fields[field].name.clone())
             .collect(),
-        y: places.iter().map(|&xi| problem.base.y(xi)).collect(),
+        y: places.iter().map(|&place| space.y(place)).collect(),
         x,
         base,
     })
@@ -114,26 +100,9 @@ fn superpose(base: &[f64], modes: &[(f64, Vec<C64>)], x: &[f64]) -> Vec<Vec<f64>
     (0..base.len()).map(row).collect()
 }
 
-/// One field of a mode at places in [−1, 1].
-fn profile(problem: &Problem, mode: &Mode, field: usize, places: &[f64]) -> Vec<C64> {
-    let block = &problem.direct.layout.columns[field];
-    let own = &mode.values[block.offset..block.offset + block.len];
-    if block.grid == GridKind::Point {
-        return vec![own[0]; places.len()];
-    }
-    let matrix = Grid::new(block.grid).interpolate_to(places);
-    let value = |i: usize| {
-        own.iter()
-            .enumerate()
-            .map(|(j, v)| v * matrix[(i, j)])
-            .sum()
-    };
-    (0..places.len()).map(value).collect()
-}
-
 impl Pattern {
-    /// The position of a field by name.
-    pub fn field(&self, name: &str) -> Option<usize> {
-        self.names.iter().position(|n| n == name)
+    /// A field by name.
+    pub fn field(&self, name: &str) -> Option<FieldId> {
+        self.names.position(|n| n == name)
     }
 }

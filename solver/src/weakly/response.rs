@@ -2,9 +2,9 @@
 //! with an amplitude of its own, closed where it is zero.
 
 use super::mode::Mode;
-use crate::dense::{Scalar, bordered, norm, scalars};
-use crate::model::{C64, ClosureKind};
-use crate::problem::{Problem, Solver, quarter_turn};
+use crate::model::{C64, ClosureKind, FieldId};
+use crate::numerics::dense::{Scalar, bordered, norm, scalars};
+use crate::problem::{Problem, Profile, Solver, Turned};
 use crate::series::Arithmetic;
 
 /// The multiplier of a closure of a mean mode.
@@ -29,7 +29,7 @@ pub struct Question<'a> {
     /// σ
     pub shift: C64,
     /// G with the boundary data.
-    pub forcing: Vec<C64>,
+    pub forcing: Turned,
     /// How the modes with amplitudes are kept.
     pub arithmetic: Arithmetic,
     /// Of which order in the amplitudes.
@@ -37,7 +37,7 @@ pub struct Question<'a> {
     /// Whether it is the coefficient of a product of |z_j|²: its own conjugate.
     pub is_real: bool,
     /// Column M0 φ and row M0ᴴ ψ of every mode whose amplitude equation takes part.
-    pub borders: &'a [(Vec<C64>, Vec<C64>)],
+    pub borders: &'a [(Turned, Turned)],
 }
 
 /// The answer.
@@ -84,15 +84,39 @@ pub fn arithmetic(problem: &Problem, rates: &[C64]) -> Arithmetic {
     }
 }
 
+/// Which part of the problem at k = 0 is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MeanSymmetry {
+    /// The even part: the mean of a steady pattern, which is its own mirror image, has no odd one.
+    Even,
+    /// All of it: what is no mean, or is driven by a wave.
+    Full,
+}
+
 impl Question<'_> {
-    /// Solves the problem; nothing where it is singular.
-    pub fn answer(self, problem: &Problem) -> Option<Response> {
+    /// The numbers in which it is solved.
+    fn arithmetic(&self, problem: &Problem) -> Arithmetic {
         // Without the mirror a mean that is its own conjugate is real in the basis of the fields themselves.
         let plain_mean = self.q == 0.0 && self.is_real && !problem.is_real();
-        if self.arithmetic == Arithmetic::Real || plain_mean {
-            self.answer_as::<f64>(problem)
-        } else {
-            self.answer_as::<C64>(problem)
+        match plain_mean {
+            true => Arithmetic::Real,
+            false => self.arithmetic,
+        }
+    }
+
+    fn mean_symmetry(&self) -> MeanSymmetry {
+        let steady = self.arithmetic == Arithmetic::Real;
+        match self.q == 0.0 && self.is_real && steady {
+            true => MeanSymmetry::Even,
+            false => MeanSymmetry::Full,
+        }
+    }
+
+    /// Solves the problem; nothing where it is singular.
+    pub fn answer(self, problem: &Problem) -> Option<Response> {
+        match self.arithmetic(problem) {
+            Arithmetic::Real => self.answer_as::<f64>(problem),
+            Arithmetic::Complex => self.answer_as::<C64>(problem),
         }
     }
 
@@ -102,13 +126,12 @@ impl Question<'_> {
         let closed = matrix.nrows();
         let mut right: Vec<T> = scalars(&self.forcing);
         right.resize(closed + self.borders.len(), T::zero_impl());
-        // The mean of a steady pattern has no odd part.
-        let even = self.q == 0.0 && self.is_real && self.arithmetic == Arithmetic::Real;
+        let even = self.mean_symmetry() == MeanSymmetry::Even;
         let solver = match problem.even_part().filter(|_| even) {
             Some(part) => Solver::even(&matrix, part),
             None if self.borders.is_empty() => Solver::whole(matrix),
             None => {
-                let scalar = |x: &Vec<C64>| -> Vec<T> {
+                let scalar = |x: &Turned| -> Vec<T> {
                     let mut x: Vec<T> = scalars(x);
                     x.resize(closed, T::zero_impl());
                     x
@@ -121,10 +144,8 @@ impl Question<'_> {
         let solution = solver.solve(&right)?;
         let mut multipliers = Vec::new();
         let size = norm(&self.forcing);
-        let mut drift = Vec::new();
-        let profiles = problem.direct.layout.columns.len();
-        let fields = problem.structure().fields.len();
-        let mut uniform = vec![C64::new(0.0, 0.0); fields - profiles];
+        let mut drift: Option<Profile> = None;
+        let mut numbers: Vec<(FieldId, C64)> = Vec::new();
         for (border, value) in problem.borders.iter().zip(&solution[n..closed]) {
             let share = norm(&border.column) * value.size();
             let relative = if share == 0.0 { 0.0 } else { share / size };
@@ -139,28 +160,29 @@ impl Question<'_> {
                 });
             }
             let Some(field) = border.field else { continue };
-            let turn = quarter_turn(problem.direct.column_turn(field));
-            let value = value.complex() * turn * border.unit;
+            let value = value.complex() * problem.direct.column_factor(field) * border.unit;
             match border.kind {
-                ClosureKind::Unknown => uniform[field - profiles] = value,
+                ClosureKind::Unknown => numbers.push((field, value)),
                 ClosureKind::Drift => {
                     let block = &problem.direct.layout.columns[field];
-                    drift.resize(n, C64::new(0.0, 0.0));
-                    drift[block.offset..][..block.len].fill(value);
+                    let drift = drift.get_or_insert_with(|| Profile::zero(n));
+                    drift[block.range()].fill(value);
                 }
                 ClosureKind::Conserved | ClosureKind::Claimed | ClosureKind::Gauge => {}
             }
         }
-        let values = problem.physical(&solution[..n]);
-        let mut rate: Vec<C64> = values.iter().map(|v| v * self.shift).collect();
-        rate.iter_mut().zip(&drift).for_each(|(r, d)| *r += d);
+        let values = problem.direct.physical(&solution[..n]);
+        let mut rate = values.times(self.shift);
+        if let Some(drift) = &drift {
+            rate.add(C64::new(1.0, 0.0), drift);
+        }
         Some(Response {
             mode: Mode {
                 q: self.q,
                 values,
                 rate,
                 drift,
-                uniform,
+                numbers,
             },
             coefficients: solution[closed..].iter().map(|c| c.complex()).collect(),
             multipliers,
@@ -173,8 +195,8 @@ impl Response {
     /// How far the problem is from singularity: the distance of σ from the spectrum of L_q.
     pub fn distance(&self, problem: &Problem) -> f64 {
         match &self.solver {
-            AnySolver::Real(solver) => solver.distance(&problem.mass(self.mode.q)),
-            AnySolver::Complex(solver) => solver.distance(&problem.mass(self.mode.q)),
+            AnySolver::Real(solver) => solver.distance(&problem.direct.mass(self.mode.q)),
+            AnySolver::Complex(solver) => solver.distance(&problem.direct.mass(self.mode.q)),
         }
     }
 }

@@ -1,24 +1,20 @@
 //! The Landau coefficient over a range of r, by calls of the library rather than of the command line.
 
-use landau_solver::collocation::Discretisation;
 use landau_solver::error::Result;
-use landau_solver::problem::Problem;
 use landau_solver::study::Setup;
-use landau_solver::weakly::{Selection, point};
+use landau_solver::weakly::Selection;
 
 include!(concat!(env!("OUT_DIR"), "/models.rs"));
 
 /// c0 and c2 at wavenumber 1; by hand the second harmonic is −i/(9 + r), and so c2 = −1/(9 + r).
 fn coefficients(r: f64) -> Result<(f64, f64)> {
     let models = models();
-    let mut setup = Setup::new(models[0].as_ref(), 1);
+    let mut setup = Setup::new(models[0].clone(), 1);
     setup
         .parameters
         .set_text(setup.model.structure(), "r", &r.to_string())?;
     let base = setup.base(None)?;
-    let discretisation = Discretisation::new();
-    let problem = Problem::new(setup.model, &base, &discretisation, 0)?;
-    let found = point(&problem, 1.0, Selection::Leading)?;
+    let found = setup.point(&base, 1.0, Selection::Leading)?;
     Ok((found.c0.re, found.c2.re))
 }
 

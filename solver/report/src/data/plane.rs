@@ -23,11 +23,9 @@ pub fn attributes(
         ("model".to_owned(), structure.name.clone()),
         ("model_hash".to_owned(), setup.hash()),
     ];
-    let values: Vec<String> = (0..structure.parameters.len())
-        .map(|i| {
-            let name = &structure.parameters[i].name;
-            format!("{name}={}", parameters.shown(structure, i))
-        })
+    let parameter = structure.parameters.pairs();
+    let values: Vec<String> = parameter
+        .map(|(id, info)| format!("{}={}", info.name, parameters.shown(structure, id)))
         .collect();
     list.push(("parameters".to_owned(), values.join(" ")));
     list.push(("k".to_owned(), k.to_string()));
@@ -76,7 +74,7 @@ pub fn dataset(setup: &Setup, found: &Pattern, attributes: Vec<(String, String)>
     let structure = setup.model.structure();
     let vertical = structure.coordinate.as_deref().unwrap_or("y");
     let mut arrays = Vec::new();
-    for (field, name) in found.names.iter().enumerate() {
+    for (field, name) in found.names.pairs() {
         let flat = |values: &[Vec<f64>]| values.iter().flatten().copied().collect();
         for (kind, values) in [
             ("linear", flat(&found.linear[field])),

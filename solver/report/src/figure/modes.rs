@@ -2,7 +2,8 @@
 
 use super::{Panel, Style, panels};
 use landau_solver::base::BaseState;
-use landau_solver::model::{C64, Structure};
+use landau_solver::model::{C64, FieldId, Structure};
+use landau_solver::space::Place;
 use landau_solver::study::Setup;
 use landau_solver::study::modes::{ModeProfile, Modes};
 use landau_solver::study::spectrum::SpectrumReport;
@@ -62,19 +63,21 @@ pub fn spectrum(found: &SpectrumReport) -> Option<String> {
 pub fn base(setup: &Setup, state: &BaseState) -> Option<String> {
     let structure = setup.model.structure();
     let vertical = structure.coordinate.as_deref()?;
-    let places = (0..POINTS).map(|i| -1.0 + 2.0 * i as f64 / (POINTS - 1) as f64);
-    let points: Vec<Vec<f64>> = places.map(|xi| state.point(setup.model, xi, 0.0)).collect();
-    let profiles = structure
-        .fields
-        .iter()
-        .enumerate()
-        .filter(|(_, f)| !f.uniform);
-    let panel = |(field, info): (usize, &landau_solver::model::FieldInfo)| {
-        let position = structure.base_position(field, 0);
-        let place = structure.state().coordinate();
-        let mut panel = Panel::new(&info.name, vertical, &info.name);
-        let curve = points.iter().map(|p| (p[place], p[position])).collect();
-        panel.curve("", Style::Line, curve);
+    let places = state.space.evenly(POINTS);
+    let points: Vec<Vec<f64>> = places.iter().map(|&place| state.at(place, 0.0)).collect();
+    let profiles = structure.profiles();
+    let panel = |field: FieldId| {
+        let name = &structure.fields[field].name;
+        let mut panel = Panel::new(name, vertical, name);
+        let value = |(place, point): (&Place, &Vec<f64>)| {
+            let y = state.space.y(*place);
+            (y, structure.base_value(point, field, 0))
+        };
+        panel.curve(
+            "",
+            Style::Line,
+            places.iter().zip(&points).map(value).collect(),
+        );
         panel
     };
     let drawn: Vec<Panel> = profiles.map(panel).collect();

@@ -1,15 +1,15 @@
 //! A pattern: the fundamental alone beside the expansion through third order.
 
 use super::{Panel, Plane, Style, panels, planes};
-use landau_solver::model::Structure;
+use landau_solver::model::{FieldId, Structure, Table};
 use landau_solver::weakly::Pattern;
 
 /// Linear beside nonlinear.
 pub fn pattern_pair(
     structure: &Structure,
     found: &Pattern,
-    shade: usize,
-    arrows: Option<[usize; 2]>,
+    shade: FieldId,
+    arrows: Option<[FieldId; 2]>,
 ) -> String {
     let vertical = structure.coordinate.clone().unwrap_or_default();
     let labels = [structure.periodic.clone(), vertical];
@@ -26,9 +26,9 @@ pub fn pattern_pair(
 
 /// The same along the periodic coordinate alone, one panel a field.
 pub fn pattern_lines(structure: &Structure, found: &Pattern) -> Option<String> {
-    let panel = |(field, name): (usize, &String)| {
+    let panel = |(field, name): (FieldId, &String)| {
         let mut panel = Panel::new(name, &structure.periodic, name);
-        let curve = |values: &[Vec<Vec<f64>>]| {
+        let curve = |values: &Table<FieldId, Vec<Vec<f64>>>| {
             let values = values[field].iter().flatten().copied();
             found.x.iter().copied().zip(values).collect()
         };
@@ -36,7 +36,7 @@ pub fn pattern_lines(structure: &Structure, found: &Pattern) -> Option<String> {
         panel.curve("fundamental alone", Style::Dashed, curve(&found.linear));
         panel
     };
-    let drawn: Vec<Panel> = found.names.iter().enumerate().map(panel).collect();
+    let drawn: Vec<Panel> = found.names.pairs().map(panel).collect();
     panels(
         &format!("{}, A = {:.4}", structure.title, found.amplitude),
         &drawn,
@@ -46,9 +46,9 @@ pub fn pattern_lines(structure: &Structure, found: &Pattern) -> Option<String> {
 fn one<'a>(
     found: &'a Pattern,
     title: &str,
-    fields: &'a [Vec<Vec<f64>>],
-    shade: usize,
-    arrows: Option<[usize; 2]>,
+    fields: &'a Table<FieldId, Vec<Vec<f64>>>,
+    shade: FieldId,
+    arrows: Option<[FieldId; 2]>,
     labels: [String; 2],
 ) -> Plane<'a> {
     Plane {

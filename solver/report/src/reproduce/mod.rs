@@ -96,7 +96,7 @@ impl Workshop<'_> {
         let spec = serde_json::to_string(task).map_err(|e| Error::computation(e.to_string()))?;
         let mut hashes = Vec::new();
         for case in task::cases(task) {
-            hashes.push(self.with_setup(case, |setup| Ok(setup.hash()))?);
+            hashes.push(self.setup(case)?.hash());
         }
         hashes.dedup();
         let version = env!("CARGO_PKG_VERSION");
@@ -107,19 +107,17 @@ impl Workshop<'_> {
         ))
     }
 
-    /// Calls `action` with the model and parameters of a case.
-    fn with_setup<R>(&self, case: &Case, action: impl FnOnce(&Setup) -> Result<R>) -> Result<R> {
+    /// The model and parameters of a case.
+    fn setup(&self, case: &Case) -> Result<Setup> {
         let name = case.model.as_ref().unwrap_or(&self.study.model);
         let beside = self.home.join(name);
         let name = match beside.to_str() {
             Some(path) if beside.is_file() => path,
             _ => name,
         };
-        self.library.with_model(name, |model| {
-            let resolution = case.resolution.unwrap_or(self.study.resolution);
-            let mut setup = Setup::new(model, resolution);
-            setup.set(&case.set)?;
-            action(&setup)
-        })
+        let resolution = case.resolution.unwrap_or(self.study.resolution);
+        let mut setup = Setup::new(self.library.model(name)?, resolution);
+        setup.set(&case.set)?;
+        Ok(setup)
     }
 }

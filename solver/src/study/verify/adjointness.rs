@@ -2,20 +2,20 @@
 //! the spectrum of L† against the conjugate spectrum of L.
 
 use super::{Check, Setup};
-use crate::base::BaseState;
-use crate::collocation::{Grid, Series};
 use crate::error::Result;
-use crate::model::{C64, End, Jet, KernelId, evaluate};
-use crate::problem::{LinearProblem, Problem, quarter_turn};
+use crate::model::layout::read_terms;
+use crate::model::{C64, Id, Jet, KernelId, Table, evaluate};
+use crate::problem::{LinearProblem, Problem, symbol};
+use crate::space::{Place, Series};
 use crate::spectrum;
 use crate::study::quadrature::adjoint_mode;
-use crate::weakly::{LandauPoint, Selection, quadrature_grid, quadrature_weights};
+use crate::weakly::{LandauPoint, Selection};
 
 /// Degree of the random fields.
 const DEGREE: usize = 11;
 
-pub(super) fn check(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Result<Vec<Check>> {
-    let problem = point.problem;
+pub(super) fn check(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
+    let problem = &point.problem;
     if let Err(reason) = problem.adjoint() {
         return Ok(vec![Check::left_out(2, "duality", reason.to_string())]);
     }
@@ -25,21 +25,19 @@ pub(super) fn check(setup: &Setup, base: &BaseState, point: &LandauPoint) -> Res
         .map(|seed| duality(problem, k, seed))
         .fold(0.0, f64::max);
     let detail = match problem.resolution {
-        0 => "random numbers".to_owned(),
-        m => format!("random smooth fields, {} points", 4 * m + 1),
+        None => "random numbers".to_owned(),
+        Some(m) => format!("random smooth fields, {} points", 4 * m + 1),
     };
     checks.push(Check::below(2, "duality, relative", worst, 1e-10, detail));
     let mut resolutions = vec![setup.effective_resolution()];
-    if resolutions[0] > 0 {
-        resolutions.push(resolutions[0] + resolutions[0].div_ceil(2));
-    }
+    resolutions.extend(setup.finer_resolution().map(Some));
     for resolution in resolutions {
-        let other = Problem::new(setup.model, base, &setup.discretisation, resolution)?;
+        let other = Problem::new(&problem.base, resolution)?;
         let pair = crate::weakly::select(&other, k, Selection::Near(point.c0))?;
         let difference = (adjoint_mode(&other, &pair)?.c.conj() - pair.c).norm();
         let name = match resolution {
-            0 => "|c0(L) − conj c0(L†)|".to_owned(),
-            m => format!("|c0(L) − conj c0(L†)| at M = {m}"),
+            None => "|c0(L) − conj c0(L†)|".to_owned(),
+            Some(m) => format!("|c0(L) − conj c0(L†)| at M = {m}"),
         };
         checks.push(Check::report(2, name, difference, "two discretisations"));
     }
@@ -66,102 +64,91 @@ pub fn duality(problem: &Problem, k: f64, seed: u64) -> f64 {
     };
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9).wrapping_add(12345));
     let structure = problem.structure();
-    let x = admissible(&problem.direct, problem, k, &mut random);
-    let y = admissible(adjoint, problem, k, &mut random);
-    let grid = quadrature_grid(problem);
-    let weights = quadrature_weights(problem, grid);
+    let x = Smooth::admissible(&problem.direct, k, &mut random);
+    let y = Smooth::admissible(adjoint, k, &mut random);
     let (mut total, mut size) = (C64::new(0.0, 0.0), 0.0);
-    for (i, &xi) in Grid::new(grid).nodes.iter().enumerate() {
-        let point = problem.base.point(problem.model, xi, k);
-        let direct = evaluate(problem.model, KernelId::Linear, &point);
-        let mirrored = evaluate(problem.model, KernelId::Adjoint, &point);
-        let profiles = structure.profiles();
-        for (term, c) in structure.linear.iter().zip(&direct) {
-            if term.jet.t == 0 && usize::from(term.jet.field) < profiles {
-                let value = *c * jet_value(problem, &x, k, term.jet, xi);
-                let left = jet_value(problem, &y, k, Jet::value(term.row), xi).conj();
-                total += weights[i] * left * value;
-                size += (weights[i] * left * value).norm();
+    for (place, weight) in problem.quadrature().nodes {
+        let point = problem.base.at(place, k);
+        let direct = evaluate(problem.model(), KernelId::Linear, &point);
+        let mirrored = evaluate(problem.model(), KernelId::Adjoint, &point);
+        for (term, c) in read_terms(&structure.linear, &direct) {
+            if term.jet.t == 0 && x.has(term.jet.of) {
+                let value = c * x.jet(term.jet, place);
+                let left = y.jet(Jet::value(term.row), place).conj();
+                total += weight * left * value;
+                size += (weight * left * value).norm();
             }
         }
-        for (term, c) in structure.adjoint.iter().zip(&mirrored) {
-            if term.jet.t == 0 && term.row < profiles {
-                let value = (*c * jet_value(problem, &y, k, term.jet, xi)).conj();
-                total -= weights[i] * value * jet_value(problem, &x, k, Jet::value(term.row), xi);
+        for (term, c) in read_terms(&structure.adjoint, &mirrored) {
+            if term.jet.t == 0 && x.has(term.row) {
+                let value = (c * y.jet(term.jet, place)).conj();
+                total -= weight * value * x.jet(Jet::value(term.row), place);
             }
         }
     }
     total.norm() / size.max(1e-300)
 }
 
-/// Chebyshev coefficients of random smooth fields that obey the conditions of a problem.
-fn admissible(
-    linear: &LinearProblem,
-    problem: &Problem,
+/// Random smooth fields, by Chebyshev coefficients, that obey the conditions of a problem.
+struct Smooth<'p, Row, Column> {
+    problem: &'p LinearProblem<Row, Column>,
     k: f64,
-    random: &mut Random,
-) -> Vec<Vec<C64>> {
-    let columns = linear.layout.columns.len();
-    let degree = if problem.resolution == 0 { 0 } else { DEGREE };
-    let mut series: Vec<Vec<C64>> = (0..columns)
-        .map(|_| {
+    series: Table<Column, Vec<C64>>,
+}
+
+impl<'p, Row: Id, Column: Id> Smooth<'p, Row, Column> {
+    fn admissible(problem: &'p LinearProblem<Row, Column>, k: f64, random: &mut Random) -> Self {
+        let degree = if problem.space.is_point() { 0 } else { DEGREE };
+        let coefficient = |n: usize| 1.0 / (1.0 + (n * n) as f64);
+        let mut one = || {
             (0..=degree)
-                .map(|n| random.complex() / (1.0 + (n * n) as f64))
+                .map(|n| random.complex() * coefficient(n))
                 .collect()
-        })
-        .collect();
-    let size = columns * (degree + 1);
-    let q = linear.walls.len();
-    if q == 0 {
-        return series;
-    }
-    // The smallest change that meets the conditions: x − Wᴴ (W Wᴴ)⁻¹ W x.
-    let w = nalgebra::DMatrix::from_fn(q, size, |row, column| {
-        let wall = &linear.walls[row];
-        let xi = if wall.end == End::Lower { -1.0 } else { 1.0 };
-        let (field, n) = (column / (degree + 1), column % (degree + 1));
-        let mut unit = vec![0.0; degree + 1];
-        unit[n] = 1.0;
-        let terms = wall
-            .linear
-            .iter()
-            .filter(|(jet, _)| usize::from(jet.field) == field);
-        terms
-            .map(|(jet, c)| {
-                symbol(problem, *jet, k)
-                    * *c
-                    * Series::new(unit.clone(), jet.y.into()).values(xi, jet.y.into())
-                        [usize::from(jet.y)]
-            })
-            .sum::<C64>()
-    });
-    let x = nalgebra::DVector::from_fn(size, |i, _| series[i / (degree + 1)][i % (degree + 1)]);
-    let gram = &w * w.adjoint();
-    if let Some(multiplier) = gram.lu().solve(&(&w * &x)) {
-        let corrected = x - w.adjoint() * multiplier;
-        for (i, value) in corrected.iter().enumerate() {
-            series[i / (degree + 1)][i % (degree + 1)] = *value;
+        };
+        let mut series: Table<Column, Vec<C64>> = problem.layout.columns.map(|_| one());
+        let (q, width) = (problem.walls.len(), degree + 1);
+        if q == 0 {
+            return Smooth { problem, k, series };
         }
+        let size = series.len() * width;
+        // The smallest change that meets the conditions: x − Wᴴ (W Wᴴ)⁻¹ W x.
+        let w = nalgebra::DMatrix::from_fn(q, size, |row, position| {
+            let wall = &problem.walls[row];
+            let (column, n) = (Column::at(position / width), position % width);
+            let terms = wall.linear.iter().filter(|(jet, _)| jet.of == column);
+            let term = |(jet, c): &(Jet<Column>, f64)| {
+                let order = usize::from(jet.y);
+                let polynomial = problem.space.polynomial(n, order);
+                let place = problem.space.end(wall.end);
+                let value = problem.space.evaluate(&polynomial, place, order)[order];
+                symbol(jet, k) * *c * value
+            };
+            terms.map(term).sum::<C64>()
+        });
+        let x = nalgebra::DVector::from_fn(size, |i, _| series[Column::at(i / width)][i % width]);
+        let gram = &w * w.adjoint();
+        if let Some(multiplier) = gram.lu().solve(&(&w * &x)) {
+            let corrected = x - w.adjoint() * multiplier;
+            for (i, value) in corrected.iter().enumerate() {
+                series[Column::at(i / width)][i % width] = *value;
+            }
+        }
+        Smooth { problem, k, series }
     }
-    series
-}
 
-fn symbol(problem: &Problem, jet: Jet, k: f64) -> C64 {
-    quarter_turn(usize::from(jet.x))
-        * k.powi(i32::from(jet.x))
-        * k.abs().powi(i32::from(jet.absx))
-        * problem.scale().powi(i32::from(jet.y))
-}
+    /// Whether a column is a profile.
+    fn has(&self, column: Column) -> bool {
+        self.series.find(column).is_some()
+    }
 
-fn jet_value(problem: &Problem, series: &[Vec<C64>], k: f64, jet: Jet, xi: f64) -> C64 {
-    let Some(own) = series.get(usize::from(jet.field)) else {
-        return C64::new(0.0, 0.0);
-    };
-    let order = usize::from(jet.y);
-    let part = |of: fn(&C64) -> f64| {
-        Series::new(own.iter().map(of).collect(), order).values(xi, order)[order]
-    };
-    symbol(problem, jet, k) * C64::new(part(|c| c.re), part(|c| c.im))
+    fn jet(&self, jet: Jet<Column>, place: Place) -> C64 {
+        let (own, order) = (&self.series[jet.of], usize::from(jet.y));
+        let part = |of: fn(&C64) -> f64| {
+            let series = Series::new(own.iter().map(of).collect(), order);
+            self.problem.space.evaluate(&series, place, order)[order]
+        };
+        symbol(&jet, self.k) * C64::new(part(|c| c.re), part(|c| c.im))
+    }
 }
 
 /// A small generator with a fixed seed: the certificate is the same on every run.

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::model::{C64, Jet, KernelId, ResidualId, evaluate};
 use crate::problem::Problem;
 use crate::series::{Levels, Monomials, Program};
+use crate::space::Place;
 
 /// All orders of three arguments; the first two entries of some are those of two.
 const ORDERS: [[usize; 3]; 6] = [
@@ -47,11 +48,11 @@ struct State {
 impl State {
     /// Perturbations on the scale of the base, so that no law leaves its domain.
     fn random(problem: &Problem, random: &mut Random) -> Self {
-        let xi = 0.98 * random.number();
+        let place = Place::at(0.5 + 0.49 * random.number());
         let jets = problem.structure().residual_jets.len();
         let mut direction = || (0..jets).map(|_| random.complex()).collect();
         State {
-            point: problem.base.point(problem.model, xi, 1.0),
+            point: problem.base.at(place, 1.0),
             directions: [direction(), direction(), direction()],
         }
     }
@@ -60,7 +61,7 @@ impl State {
 /// The residual's coefficients of z and z^degree, `[row][state]`.
 fn by_series(problem: &Problem, states: &[State], degree: usize) -> [Vec<Vec<C64>>; 2] {
     let structure = problem.structure();
-    let Some(kernel) = problem.model.residual(ResidualId::Balances) else {
+    let Some(kernel) = problem.model().residual(ResidualId::Balances) else {
         return [Vec::new(), Vec::new()];
     };
     let rows: Vec<usize> = (0..structure.balances.len()).collect();
@@ -108,12 +109,12 @@ pub fn second_route(problem: &Problem, degree: usize) -> (f64, f64) {
             .collect()
     };
     for (index, state) in states.iter().enumerate() {
-        let c = evaluate(problem.model, KernelId::Nonlinear, &state.point);
-        let divisors = evaluate(problem.model, KernelId::Divisors, &state.point);
+        let c = evaluate(problem.model(), KernelId::Nonlinear, &state.point);
+        let divisors = evaluate(problem.model(), KernelId::Divisors, &state.point);
         let directions = state.directions.each_ref().map(in_forms);
-        for row in 0..structure.balances.len() {
+        for (row, balance) in structure.balances.ids().enumerate() {
             let linear = first_order[row][index].norm();
-            if !structure.forms[degree - 2][row] {
+            if !structure.forms[degree - 2][balance] {
                 // The form has no terms: the series must not have any either.
                 let stray = series[row][index].norm() > 1e-12 * linear.max(1e-300);
                 difference = difference.max(if stray { 1.0 } else { 0.0 });
@@ -122,7 +123,7 @@ pub fn second_route(problem: &Problem, degree: usize) -> (f64, f64) {
             let value = |order: &[usize]| {
                 let arguments: Vec<&[C64]> =
                     order.iter().map(|&i| directions[i].as_slice()).collect();
-                problem.model.form(degree, row, &c, &arguments)
+                problem.model().form(degree, balance, &c, &arguments)
             };
             let form = value(&[0, 0, 0][..degree]);
             let expected = -series[row][index] / divisors[row];

@@ -6,11 +6,11 @@
 //! condition is judged by itself, where its defect stands clear of what rounding leaves.
 
 use super::{Check, Verdict};
-use crate::collocation::{Block, Grid, GridKind};
 use crate::error::Result;
-use crate::model::{C64, End, Jet, Kernel, ResidualId, WithRounding};
-use crate::problem::Problem;
+use crate::model::{BalanceId, C64, End, Id, Jet, Kernel, ResidualId, WithRounding};
+use crate::problem::{Problem, Profile};
 use crate::series::Monomial;
+use crate::space::{Block, Points};
 use crate::weakly::{Expansion, LandauPoint, Mode, power};
 
 /// Phases at which the defect is sampled, for each power of the amplitude that it falls by.
@@ -41,7 +41,7 @@ pub struct ResidualOrder {
 }
 
 pub(super) fn check(point: &LandauPoint, order: usize) -> Result<Vec<Check>> {
-    let expansion = Expansion::to(point.problem, vec![point.pair.clone()], order)?;
+    let expansion = Expansion::to(&point.problem, vec![point.pair.clone()], order)?;
     Ok(vec![order_check("order of the residual in A", &expansion)])
 }
 
@@ -126,7 +126,7 @@ pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
         Some((slope, row, i)) => ResidualOrder {
             slope: Some(slope),
             amplitude: amplitudes[i],
-            row: name(expansion.problem, row),
+            row: name(&expansion.problem, row),
         },
         None => {
             let share = |row: &usize| measured[0][*row].value / floor(*row, 0).max(1e-300);
@@ -134,7 +134,7 @@ pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
             ResidualOrder {
                 slope: None,
                 amplitude: amplitudes[0],
-                row: name(expansion.problem, nearest.unwrap_or(0)),
+                row: name(&expansion.problem, nearest.unwrap_or(0)),
             }
         }
     }
@@ -143,15 +143,13 @@ pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
 /// A balance, or a condition at an end.
 fn name(problem: &Problem, row: usize) -> String {
     let balances = &problem.structure().balances;
-    match balances.get(row) {
+    match balances.find(BalanceId::at(row)) {
         Some(balance) => format!("balance `{balance}`"),
         None => {
             let wall = &problem.direct.walls[row - balances.len()];
             let coordinate = problem.structure().coordinate.as_deref().unwrap_or("y");
-            let place = match wall.end {
-                End::Lower => problem.base.lower,
-                End::Upper => problem.base.upper,
-            };
+            let space = problem.space();
+            let place = space.y(space.end(wall.end));
             format!(
                 "condition {} (at {coordinate} = {place})",
                 row - balances.len() + 1
@@ -161,15 +159,15 @@ fn name(problem: &Problem, row: usize) -> String {
 }
 
 /// The series, with the jets of its modes on all grids.
-struct Series<'e, 'p, 'm> {
-    expansion: &'e Expansion<'p, 'm>,
+struct Series<'e> {
+    expansion: &'e Expansion,
     modes: Vec<(Monomial, Mode)>,
     grids: Vec<OnGrid>,
 }
 
-/// Jets at the points of one grid.
+/// Jets at the points of one family.
 struct OnGrid {
-    grid: GridKind,
+    points: Points,
     states: Vec<Vec<f64>>,
     base: Vec<Vec<f64>>,
     tables: Vec<Tables>,
@@ -182,36 +180,32 @@ struct Tables {
     rounding: Vec<Vec<f64>>,
 }
 
-impl<'e, 'p, 'm> Series<'e, 'p, 'm> {
-    fn new(expansion: &'e Expansion<'p, 'm>) -> Self {
-        let problem = expansion.problem;
+impl<'e> Series<'e> {
+    fn new(expansion: &'e Expansion) -> Self {
+        let problem = expansion.problem.as_ref();
         // One of each pair of conjugates.
         let known = expansion.known().into_iter();
         let modes: Vec<(Monomial, Mode)> = known.filter(|(m, _)| m.z >= m.conj).collect();
-        let mut kinds: Vec<GridKind> = Vec::new();
-        let rows = problem.direct.layout.rows.iter().map(|block| block.grid);
-        let walls = problem.direct.walls.iter().map(|wall| match wall.end {
-            End::Lower => GridKind::Lower,
-            End::Upper => GridKind::Upper,
-        });
-        for grid in rows.chain(walls) {
-            if !kinds.contains(&grid) {
-                kinds.push(grid);
+        let mut kinds: Vec<Points> = Vec::new();
+        let groups = problem.direct.layout.groups().into_iter();
+        let walls = problem.direct.walls.iter();
+        let walls = walls.map(|wall| Points::end(wall.end));
+        for points in groups.map(|(points, _)| points).chain(walls) {
+            if !kinds.contains(&points) {
+                kinds.push(points);
             }
         }
         let jets = &problem.structure().residual_jets;
         let k = expansion.modes.first().map_or(0.0, |mode| mode.pair.k);
-        let on = |grid: GridKind| {
-            let nodes = Grid::new(grid).nodes;
-            let states = nodes
-                .iter()
-                .map(|&xi| problem.base.point(problem.model, xi, k));
+        let on = |points: Points| {
+            let places = problem.space().places(points).into_iter();
+            let states = places.map(|place| problem.base.at(place, k));
             let states: Vec<Vec<f64>> = states.collect();
             let tables = modes
                 .iter()
-                .map(|(_, mode)| Tables::new(problem, mode, jets, grid));
+                .map(|(_, mode)| Tables::new(problem, mode, jets, points));
             OnGrid {
-                grid,
+                points,
                 base: states.iter().map(|s| base_jets(problem, s, jets)).collect(),
                 tables: tables.collect(),
                 states,
@@ -231,13 +225,13 @@ impl<'e, 'p, 'm> Series<'e, 'p, 'm> {
         let expansion = self.expansion;
         let structure = expansion.problem.structure();
         let columns = &expansion.problem.direct.layout.columns;
-        let moving = (0..columns.len()).filter(|&field| {
+        let moving = columns.ids().filter(|&field| {
             let mut terms = structure.linear.iter();
-            terms.any(|t| t.jet.t > 0 && usize::from(t.jet.field) == field)
+            terms.any(|t| t.jet.t > 0 && t.jet.of == field)
         });
         let size = |mode: &Mode, block: &Block| {
-            let values = &mode.values[block.offset..][..block.len];
-            values.iter().map(|v| v.norm()).fold(0.0, f64::max)
+            let values = block.of(&mode.values).iter();
+            values.map(|v| v.norm()).fold(0.0, f64::max)
         };
         let sum = |degree: usize, block: &Block| -> f64 {
             let own = self.modes.iter().filter(|(m, _)| m.degree() == degree);
@@ -295,7 +289,7 @@ impl<'e, 'p, 'm> Series<'e, 'p, 'm> {
 
     /// The largest residual of every balance (at its own points) and of every boundary condition.
     fn defects(&self, amplitude: f64) -> Vec<Defect> {
-        let problem = self.expansion.problem;
+        let problem = self.expansion.problem.as_ref();
         let balances = problem.structure().balances.len();
         let mut found = vec![Defect::default(); balances + problem.direct.walls.len()];
         let mut widen = |row: usize, value: f64, size: f64| {
@@ -303,28 +297,26 @@ impl<'e, 'p, 'm> Series<'e, 'p, 'm> {
             defect.value = defect.value.max(value.abs());
             defect.rounding = defect.rounding.max(f64::EPSILON * size);
         };
-        let rows = || problem.direct.layout.rows.iter().enumerate();
         let samples = self.samples(amplitude);
-        if let Some(kernel) = problem.model.residual(ResidualId::Balances) {
-            for on in self
-                .grids
-                .iter()
-                .filter(|on| rows().any(|(_, b)| b.grid == on.grid))
-            {
-                for value in self.residuals(kernel, on, &samples) {
-                    for (row, _) in rows().filter(|(_, b)| b.grid == on.grid) {
-                        widen(row, value[row].value, value[row].size);
+        if let Some(kernel) = problem.model().residual(ResidualId::Balances) {
+            for (points, rows) in problem.direct.layout.groups() {
+                for on in self.grids.iter().filter(|on| on.points == points) {
+                    for value in self.residuals(kernel, on, &samples) {
+                        for row in rows.iter().map(|row| row.index()) {
+                            widen(row, value[row].value, value[row].size);
+                        }
                     }
                 }
             }
         }
         let case = ResidualId::Conditions(problem.base.case);
-        let Some(kernel) = problem.model.residual(case) else {
+        let Some(kernel) = problem.model().residual(case) else {
             return found;
         };
         let still = self.samples(0.0);
-        for (end, grid) in [(End::Lower, GridKind::Lower), (End::Upper, GridKind::Upper)] {
-            for on in self.grids.iter().filter(|on| on.grid == grid) {
+        for end in End::BOTH {
+            let points = Points::end(end);
+            for on in self.grids.iter().filter(|on| on.points == points) {
                 // The perturbation obeys B(X⁰ + X') − B(X⁰) = 0.
                 let with = self.residuals(kernel, on, &samples);
                 let without = self.residuals(kernel, on, &still);
@@ -380,24 +372,21 @@ impl<'e, 'p, 'm> Series<'e, 'p, 'm> {
 }
 
 impl Tables {
-    fn new(problem: &Problem, mode: &Mode, jets: &[Jet], grid: GridKind) -> Self {
+    fn new(problem: &Problem, mode: &Mode, jets: &[Jet], points: Points) -> Self {
         let table = |mode: &Mode| -> Vec<Vec<C64>> {
-            let table = mode.jets(problem, jets, grid);
-            (0..grid.count()).map(|i| table.at(i).to_vec()).collect()
+            let table = mode.jets(problem, jets, points);
+            (0..points.count()).map(|i| table.at(i).to_vec()).collect()
         };
         let mut own = mode.clone();
         own.rate.clone_from(&mode.values);
-        let mut drifting = mode.clone();
-        drifting.values.fill(C64::new(0.0, 0.0));
-        drifting.uniform.fill(C64::new(0.0, 0.0));
-        drifting.rate.clone_from(&mode.drift);
+        let drifting = mode.drift.as_ref().map(|drift| {
+            let still = Profile::zero(mode.values.len());
+            table(&Mode::new(mode.q, still, drift.clone()))
+        });
         Tables {
             plain: table(&own),
-            rounding: own.rounding(problem, jets, grid),
-            drift: match mode.drift.is_empty() {
-                true => Vec::new(),
-                false => table(&drifting),
-            },
+            rounding: own.rounding(problem, jets, points),
+            drift: drifting.unwrap_or_default(),
         }
     }
 }

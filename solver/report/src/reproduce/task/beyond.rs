@@ -14,6 +14,7 @@ use landau_solver::study::amplitudes::next_order;
 use landau_solver::weakly::{
     AmplitudeEquation, AmplitudeSystem, Equilibrium, Expansion, Selection, equilibria, select,
 };
+use std::sync::Arc;
 
 /// The terms of the next order, relative to the largest there, up to which an equilibrium is drawn as trusted.
 const TRUSTED: f64 = 0.3;
@@ -58,21 +59,18 @@ pub(super) fn orders(shop: &Workshop, cases: &[Case], asked: &Orders) -> Result<
     let mut outcome = Outcome::default();
     let places = asked.over.values();
     let found = each(cases, &mut outcome.failures, |case| {
-        shop.with_setup(case, |setup| {
-            let base = setup.base(None)?;
-            setup.with_problem(&base, |problem| {
-                let equation = |pairs: Vec<EigenPair>| {
-                    let expansion = Expansion::to(problem, pairs, asked.highest - 1)?;
-                    let terms = expansion.last_coefficients().equations.remove(0);
-                    let coefficients: Vec<_> = terms.iter().map(|term| term.g).collect();
-                    Ok(AmplitudeEquation {
-                        errors: vec![0.0; coefficients.len()],
-                        coefficients,
-                    })
-                };
-                Ok(along(problem, &places, equation, &[1.0]))
+        let setup = shop.setup(case)?;
+        let problem = setup.problem(&setup.base(None)?)?;
+        let equation = |pairs: Vec<EigenPair>| {
+            let expansion = Expansion::to(&problem, pairs, asked.highest - 1)?;
+            let terms = expansion.last_coefficients().equations.remove(0);
+            let coefficients: Vec<_> = terms.iter().map(|term| term.g).collect();
+            Ok(AmplitudeEquation {
+                errors: vec![0.0; coefficients.len()],
+                coefficients,
             })
-        })
+        };
+        Ok(along(&problem, &places, equation, &[1.0]))
     })?;
     let orders: Vec<usize> = (3..=asked.highest).step_by(2).collect();
     let mut header = vec!["case".to_owned(), "k".to_owned()];
@@ -143,7 +141,7 @@ struct Pair {
     states: Vec<(Equilibrium, f64)>,
 }
 
-fn pair(problem: &Problem, pairs: Vec<EigenPair>) -> Result<Pair> {
+fn pair(problem: &Arc<Problem>, pairs: Vec<EigenPair>) -> Result<Pair> {
     let longer = Expansion::to(problem, pairs, 4)?.last_coefficients();
     let (system, next) = (longer.part(1..=3), longer.part(4..=5));
     let states = equilibria(&system).into_iter().map(|state| {
@@ -162,17 +160,10 @@ pub(super) fn second_harmonic(shop: &Workshop, cases: &[Case], over: &Axis) -> R
     let mut outcome = Outcome::default();
     let places = over.values();
     let found = each(cases, &mut outcome.failures, |case| {
-        shop.with_setup(case, |setup| {
-            let base = setup.base(None)?;
-            setup.with_problem(&base, |problem| {
-                Ok(along(
-                    problem,
-                    &places,
-                    |own| pair(problem, own),
-                    &[1.0, 2.0],
-                ))
-            })
-        })
+        let setup = shop.setup(case)?;
+        let problem = setup.problem(&setup.base(None)?)?;
+        let value = |own| pair(&problem, own);
+        Ok(along(&problem, &places, value, &[1.0, 2.0]))
     })?;
     let [own, other, up, down] = [
         ([2, 0], [1, 0]),

@@ -84,7 +84,7 @@ pub(super) fn claims(
         // What has no answer leaves the statement undecided: said there, not as a failure of the study.
         let mut missing = Vec::new();
         let found = each(cases, &mut missing, |case| {
-            shop.with_setup(case, |setup| value(setup, case, statement))
+            value(&shop.setup(case)?, case, statement)
         })?;
         let first = found.iter().find(|(index, _)| *index == 0).map(|(_, v)| *v);
         let mut verdicts = Vec::new();

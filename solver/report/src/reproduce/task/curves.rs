@@ -9,13 +9,13 @@ use super::points::question;
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
 use landau_solver::study::critical;
-use landau_solver::study::row::{Column, Row, column};
+use landau_solver::study::row::{Column, NUMBERS, Row, column};
 use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::{self, Setup, Silent};
 
 /// Landau points of one case over an axis.
 fn rows(setup: &Setup, k: Option<f64>, name: &str, values: Vec<f64>) -> Result<Vec<Row>> {
-    let axis = study::Axis::named(setup.model, name)?;
+    let axis = study::Axis::named(setup.model.as_ref(), name)?;
     let range = Range {
         name: name.to_owned(),
         axis,
@@ -38,7 +38,7 @@ pub(super) fn sweep(
 ) -> Result<Outcome> {
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
-        shop.with_setup(case, |setup| rows(setup, case.k, &over.name, over.values()))
+        rows(&shop.setup(case)?, case.k, &over.name, over.values())
     })?;
     let names = |column: &Column| match column {
         Column::A0 => ("growth rate", "a0"),
@@ -51,18 +51,8 @@ pub(super) fn sweep(
         .map(|column| Panel::new(names(column).0, &over.name, names(column).1))
         .collect();
     // The names of a sweep's own table.
-    let mut table = Table::new(&[
-        "case",
-        &over.name,
-        "c0_re",
-        "c0_im",
-        "c0_error",
-        "c2_re",
-        "c2_im",
-        "c2_error",
-        "amplitude",
-    ])
-    .with_words(&["label", "bifurcation", "status"]);
+    let header: Vec<&str> = ["case", &over.name].into_iter().chain(NUMBERS).collect();
+    let mut table = Table::new(&header).with_words(&["label", "bifurcation", "status"]);
     let mut unconverged = 0;
     for (index, rows) in &found {
         let label = &cases[*index].label;
@@ -76,21 +66,11 @@ pub(super) fn sweep(
             }
         }
         for row in rows {
-            let pair = |c: Option<[f64; 2]>| c.unwrap_or([f64::NAN; 2]);
-            let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
-            let ([a0, b0], [a2, b2]) = (pair(row.c0), pair(row.c2));
-            let numbers = vec![
-                (*index + 1) as f64,
-                row.coordinates[0],
-                a0,
-                b0,
-                number(row.c0_error),
-                a2,
-                b2,
-                number(row.c2_error),
-                number(row.amplitude),
-            ];
-            table.push(numbers, &[label, &row.bifurcation, &row.status]);
+            let own = row.numbers().map(|x| x.unwrap_or(f64::NAN));
+            let numbers = [(*index + 1) as f64, row.coordinates[0]]
+                .into_iter()
+                .chain(own);
+            table.push(numbers.collect(), &[label, &row.bifurcation, &row.status]);
             unconverged += usize::from(row.c2.is_none());
         }
     }
@@ -107,12 +87,10 @@ pub(super) fn sweep(
 pub(super) fn resonance(shop: &Workshop, cases: &[Case], over: &Axis) -> Result<Outcome> {
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
-        shop.with_setup(case, |setup| {
-            let values = over.values();
-            let doubled = values.iter().map(|k| 2.0 * k).collect();
-            let one = rows(setup, None, "k", values)?;
-            Ok((one, rows(setup, None, "k", doubled)?))
-        })
+        let (setup, values) = (shop.setup(case)?, over.values());
+        let doubled = values.iter().map(|k| 2.0 * k).collect();
+        let one = rows(&setup, None, "k", values)?;
+        Ok((one, rows(&setup, None, "k", doubled)?))
     })?;
     let mut panel = Panel::new("2:1 resonance", "k", "growth rate");
     let mut table = Table::new(&["case", "k", "a0(k)", "a0(2k)/2"]).with_words(&["label"]);
@@ -144,27 +122,26 @@ pub(super) fn power_law(
 ) -> Result<Outcome> {
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
-        shop.with_setup(case, |setup| {
-            let question = question(setup, case, asked)?;
-            let critical = critical::critical(setup, question, &Silent)?;
-            let place = critical[0].value;
-            let [near, far] = distances.map(f64::abs);
-            let steps = (count.max(3) - 1) as f64;
-            let relative: Vec<f64> = (0..count.max(3))
-                .map(|i| distances[0].signum() * near * (far / near).powf(i as f64 / steps))
-                .collect();
-            let values = relative.iter().map(|d| place * (1.0 + d)).collect();
-            let rows = rows(setup, case.k, &asked.vary, values)?;
-            let points: Vec<(f64, f64)> = relative
-                .iter()
-                .zip(&rows)
-                .filter_map(|(d, row)| Some((d.abs(), row.amplitude?)))
-                .collect();
-            if points.len() < 3 {
-                return Err(Error::computation("too few equilibria for a fit"));
-            }
-            Ok((place, points))
-        })
+        let setup = shop.setup(case)?;
+        let question = question(&setup, case, asked)?;
+        let critical = critical::critical(&setup, question, &Silent)?;
+        let place = critical[0].value;
+        let [near, far] = distances.map(f64::abs);
+        let steps = (count.max(3) - 1) as f64;
+        let relative: Vec<f64> = (0..count.max(3))
+            .map(|i| distances[0].signum() * near * (far / near).powf(i as f64 / steps))
+            .collect();
+        let values = relative.iter().map(|d| place * (1.0 + d)).collect();
+        let rows = rows(&setup, case.k, &asked.vary, values)?;
+        let points: Vec<(f64, f64)> = relative
+            .iter()
+            .zip(&rows)
+            .filter_map(|(d, row)| Some((d.abs(), row.amplitude?)))
+            .collect();
+        if points.len() < 3 {
+            return Err(Error::computation("too few equilibria for a fit"));
+        }
+        Ok((place, points))
     })?;
     let mut panel = Panel::new(
         "distance from the bifurcation",

@@ -8,6 +8,7 @@ use super::each;
 use crate::data::plane::{attributes, dataset};
 use crate::figure::{Panel, Style, pattern_pair};
 use landau_solver::error::{Error, Result};
+use landau_solver::model::FieldId;
 use landau_solver::study::{self, Setup};
 use landau_solver::weakly::{Pattern, Selection, Window, pattern as expand};
 use nalgebra::{Matrix2, Vector2};
@@ -19,20 +20,19 @@ const MEASURED: [usize; 2] = [401, 401];
 /// The pattern at the equilibrium amplitude.
 fn at_equilibrium(setup: &Setup, k: f64, points: [usize; 2], wavelengths: f64) -> Result<Pattern> {
     let base = setup.base(None)?;
-    setup.with_point(&base, k, Selection::Leading, |point| {
-        let missing = || Error::computation("there is no equilibrium amplitude at cubic order");
-        let amplitude = point.amplitude().ok_or_else(missing)?;
-        let [columns, rows] = points;
-        let window = Window {
-            columns,
-            rows,
-            wavelengths,
-        };
-        expand(point, amplitude, window)
-    })
+    let point = setup.point(&base, k, Selection::Leading)?;
+    let missing = || Error::computation("there is no equilibrium amplitude at cubic order");
+    let amplitude = point.amplitude().ok_or_else(missing)?;
+    let [columns, rows] = points;
+    let window = Window {
+        columns,
+        rows,
+        wavelengths,
+    };
+    expand(&point, amplitude, window)
 }
 
-fn field(found: &Pattern, name: &str) -> Result<usize> {
+fn field(found: &Pattern, name: &str) -> Result<FieldId> {
     let missing = || Error::input(format!("the model has no profile `{name}`"));
     found.field(name).ok_or_else(missing)
 }
@@ -52,19 +52,18 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
     let found = each(cases, &mut outcome.failures, |case| {
         let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
         let k = case.k.ok_or_else(missing)?;
-        shop.with_setup(case, |setup| {
-            let found = at_equilibrium(setup, k, DRAWN, wanted.wavelengths)?;
-            let shade = field(&found, wanted.shade)?;
-            let arrows = wanted
-                .arrows
-                .map(|[u, v]| Ok::<_, Error>([field(&found, u)?, field(&found, v)?]))
-                .transpose()?;
-            let svg = pattern_pair(setup.model.structure(), &found, shade, arrows);
-            let parameters = &setup.base(None)?.parameters;
-            let facts = attributes(setup, parameters, k, Some(found.amplitude));
-            let data = dataset(setup, &found, facts);
-            Ok((svg, found.amplitude, data))
-        })
+        let setup = shop.setup(case)?;
+        let found = at_equilibrium(&setup, k, DRAWN, wanted.wavelengths)?;
+        let shade = field(&found, wanted.shade)?;
+        let arrows = wanted
+            .arrows
+            .map(|[u, v]| Ok::<_, Error>([field(&found, u)?, field(&found, v)?]))
+            .transpose()?;
+        let svg = pattern_pair(setup.model.structure(), &found, shade, arrows);
+        let parameters = &setup.base(None)?.parameters;
+        let facts = attributes(&setup, parameters, k, Some(found.amplitude));
+        let data = dataset(&setup, &found, facts);
+        Ok((svg, found.amplitude, data))
     })?;
     for (index, (svg, amplitude, data)) in found {
         let case = &cases[index];
@@ -117,13 +116,11 @@ pub(super) fn circulation(
         })
         .collect();
     let found = each(&moved, &mut outcome.failures, |case| {
-        shop.with_setup(case, |setup| {
-            study::check_wavenumber(k)?;
-            let found = at_equilibrium(setup, k, MEASURED, 1.0)?;
-            let [u, v] = [field(&found, &arrows[0])?, field(&found, &arrows[1])?];
-            let length = side * 2.0 * std::f64::consts::PI / k;
-            vortex(&found, [u, v], field(&found, shade)?, length)
-        })
+        study::check_wavenumber(k)?;
+        let found = at_equilibrium(&shop.setup(case)?, k, MEASURED, 1.0)?;
+        let [u, v] = [field(&found, &arrows[0])?, field(&found, &arrows[1])?];
+        let length = side * 2.0 * std::f64::consts::PI / k;
+        vortex(&found, [u, v], field(&found, shade)?, length)
     })?;
     let values = over.values();
     for (number, case) in cases.iter().enumerate() {
@@ -165,7 +162,7 @@ pub(super) fn circulation(
 }
 
 /// Circulation over a square around the strongest vortex of half a wavelength.
-fn vortex(found: &Pattern, [u, v]: [usize; 2], shade: usize, side: f64) -> Result<Vortex> {
+fn vortex(found: &Pattern, [u, v]: [FieldId; 2], shade: FieldId, side: f64) -> Result<Vortex> {
     let (x, y) = (&found.x, &found.y);
     let (u, v) = (&found.nonlinear[u], &found.nonlinear[v]);
     let corners =

@@ -16,7 +16,7 @@ use landau_solver::weakly::Selection;
 /// The question of a study file for one case.
 pub(super) fn question(setup: &Setup, case: &Case, asked: &Asked) -> Result<Question> {
     Ok(Question {
-        axis: study::Axis::named(setup.model, &asked.vary)?,
+        axis: study::Axis::named(setup.model.as_ref(), &asked.vary)?,
         from: asked.between[0],
         to: asked.between[1],
         quantity: match asked.of {
@@ -24,7 +24,7 @@ pub(super) fn question(setup: &Setup, case: &Case, asked: &Asked) -> Result<Ques
             Of::C2 => Quantity::C2,
             Of::Resonance => Quantity::Resonance,
         },
-        k: asked.k.or(case.k).unwrap_or(0.0),
+        k: asked.k.or(case.k),
         near: None,
     })
 }
@@ -91,9 +91,7 @@ pub(super) fn critical(
     }
     let found = each(&inquiries, &mut outcome.failures, |inquiry| {
         let asked = &asked[inquiry.question];
-        shop.with_setup(&inquiry.case, |setup| {
-            critical_point(setup, &inquiry.case, asked)
-        })
+        critical_point(&shop.setup(&inquiry.case)?, &inquiry.case, asked)
     })?;
     let first = against.map_or("case", |a| a.name.as_str());
     let mut table =
@@ -151,14 +149,11 @@ pub(super) fn values(shop: &Workshop, figure: &str, cases: &[Case]) -> Result<Ou
     let found = each(cases, &mut outcome.failures, |case| {
         let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
         let k = case.k.ok_or_else(missing)?;
-        shop.with_setup(case, |setup| {
-            let base = setup.base(None)?;
-            setup.with_point(&base, k, Selection::Leading, |point| {
-                let error = accuracy(setup, &base, point)?;
-                let values = [Some(point.c0.re), Some(point.c2.re), point.amplitude()];
-                Ok((values, [Some(error.c0), Some(error.c2), None]))
-            })
-        })
+        let setup = shop.setup(case)?;
+        let point = setup.point(&setup.base(None)?, k, Selection::Leading)?;
+        let error = accuracy(&setup, &point)?;
+        let values = [Some(point.c0.re), Some(point.c2.re), point.amplitude()];
+        Ok((values, [Some(error.c0), Some(error.c2), None]))
     })?;
     let mut found = found.into_iter().peekable();
     for (index, case) in cases.iter().enumerate() {

@@ -7,7 +7,7 @@ use super::draw::picture;
 use super::each;
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
-use landau_solver::model::C64;
+use landau_solver::model::{C64, End, FieldId};
 use landau_solver::parameters::Parameters;
 use landau_solver::problem::Problem;
 use landau_solver::spectrum;
@@ -21,10 +21,9 @@ const POINTS: usize = 401;
 /// own scale height.
 type Tail<'a> = ([f64; 2], &'a [String; 2]);
 
-fn field(setup: &Setup, name: &str) -> Result<usize> {
-    let structure = setup.model.structure();
-    let position = structure.fields.iter().position(|f| f.name == name);
-    position.ok_or_else(|| Error::input(format!("the model has no field `{name}`")))
+fn field(setup: &Setup, name: &str) -> Result<FieldId> {
+    let found = setup.model.structure().field(name);
+    found.ok_or_else(|| Error::input(format!("the model has no field `{name}`")))
 }
 
 pub(super) fn profiles(
@@ -37,25 +36,22 @@ pub(super) fn profiles(
 ) -> Result<Outcome> {
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
-        shop.with_setup(case, |setup| {
-            let structure = setup.model.structure();
-            let base = setup.base(None)?;
-            let mut columns = vec![Vec::new(); fields.len() + 1];
-            for i in 0..POINTS {
-                let xi = -1.0 + 2.0 * i as f64 / (POINTS - 1) as f64;
-                let point = base.point(setup.model, xi, 0.0);
-                columns[0].push(base.y(xi));
-                for (column, name) in columns[1..].iter_mut().zip(fields) {
-                    column.push(point[structure.base_position(field(setup, name)?, 0)]);
-                }
+        let setup = shop.setup(case)?;
+        let structure = setup.model.structure();
+        let base = setup.base(None)?;
+        let mut columns = vec![Vec::new(); fields.len() + 1];
+        for place in base.space.evenly(POINTS) {
+            let point = base.at(place, 0.0);
+            columns[0].push(base.space.y(place));
+            for (column, name) in columns[1..].iter_mut().zip(fields) {
+                column.push(structure.base_value(&point, field(&setup, name)?, 0));
             }
-            let heights = tail.map(|tail| scale_heights(setup, &base, &columns, tail));
-            Ok((columns, heights.transpose()?))
-        })
+        }
+        let heights = tail.map(|tail| scale_heights(&setup, &base, &columns, tail));
+        Ok((columns, heights.transpose()?))
     })?;
-    let vertical = shop.with_setup(&cases[0], |setup| {
-        Ok(setup.model.structure().coordinate.clone())
-    })?;
+    let first = shop.setup(&cases[0])?;
+    let vertical = first.model.structure().coordinate.clone();
     let vertical = vertical.unwrap_or_default();
     let mut drawn: Vec<Panel> = fields
         .iter()
@@ -103,9 +99,8 @@ fn scale_heights(
     let [a, b] = stretch.map(|fraction| place(fraction.clamp(0.0, 1.0)));
     let fall = (columns[1][a] / columns[1][b]).ln();
     let structure = setup.model.structure();
-    let top = base.at_end(setup.model, landau_solver::model::End::Upper);
-    let value = top[structure.base_position(field(setup, of)?, 0)];
-    let parameter = Parameters::index(structure, parameter)?;
+    let value = base.value(field(setup, of)?, base.space.end(End::Upper));
+    let parameter = Parameters::named(structure, parameter)?;
     Ok([
         (columns[0][b] - columns[0][a]) / fall,
         value * base.parameters.values[parameter],
@@ -131,23 +126,20 @@ pub(super) fn spectrum(
         })
         .collect();
     let found = each(&all, &mut outcome.failures, |case| {
-        shop.with_setup(case, |setup| {
-            let base = setup.base(None)?;
-            setup.with_problem(&base, |problem| {
-                let mut rows = Vec::new();
-                for k in over.values() {
-                    let mode = spectrum::leading(problem, k)?;
-                    // Where inverse iteration finds no isolated partner, the nearest of all of L†.
-                    let adjoint = match adjoint_mode(problem, &mode) {
-                        Ok(adjoint) => adjoint.c,
-                        Err(_) => nearest_adjoint(problem, k, mode.c)?,
-                    };
-                    let gap = (adjoint.conj() - mode.c).norm();
-                    rows.push([k, mode.c.re, adjoint.re, gap]);
-                }
-                Ok(rows)
-            })
-        })
+        let setup = shop.setup(case)?;
+        let problem = &setup.problem(&setup.base(None)?)?;
+        let mut rows = Vec::new();
+        for k in over.values() {
+            let mode = spectrum::leading(problem, k)?;
+            // Where inverse iteration finds no isolated partner, the nearest of all of L†.
+            let adjoint = match adjoint_mode(problem, &mode) {
+                Ok(adjoint) => adjoint.c,
+                Err(_) => nearest_adjoint(problem, k, mode.c)?,
+            };
+            let gap = (adjoint.conj() - mode.c).norm();
+            rows.push([k, mode.c.re, adjoint.re, gap]);
+        }
+        Ok(rows)
     })?;
     let mut panel = Panel::new("least stable mode", "k", "growth rate");
     let mut table = Table::new(&["case", "k", "L", "L†", "difference"]).with_words(&["label"]);

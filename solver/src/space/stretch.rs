@@ -4,9 +4,16 @@
 //! that a profile which is smooth outside the layer stays smooth in η (Tee & Trefethen 2006 use
 //! the same map).
 
+use super::chebyshev::Series;
+
+/// Places at which the steepest layer is looked for.
+const SAMPLES: usize = 2000;
+/// A layer wider than this part of the half-interval needs no coordinate of its own.
+const WIDE: f64 = 0.5;
+
 /// The coordinate of a base state's series.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Stretch {
+pub(super) enum Stretch {
     /// η = ξ
     None,
     /// ξ = centre + width sinh(…): a thin layer widened.
@@ -52,6 +59,30 @@ impl Stretch {
                 (middle + ((xi - centre) / width).asinh() / rate).clamp(-1.0, 1.0)
             }
         }
+    }
+
+    /// A coordinate that widens the steepest interior layer of some profiles, which are series in this one.
+    pub fn widening<'s>(&self, profiles: impl Iterator<Item = &'s Series>) -> Stretch {
+        let mut thinnest = (WIDE, Stretch::None);
+        let places = (1..SAMPLES).map(|i| -1.0 + 2.0 * i as f64 / SAMPLES as f64);
+        let places: Vec<f64> = places.collect();
+        for series in profiles.filter(|s| s.coefficients().len() > 1) {
+            let values = places.iter().map(|&eta| series.values(eta, 0)[0]);
+            let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
+                (a.min(v), b.max(v))
+            });
+            for &eta in &places {
+                let xi = self.xi(eta);
+                let slope = self.compose(xi, &series.values(eta, 1))[1].abs();
+                // Chebyshev points resolve a layer at an end by themselves.
+                let width = (most - least) / slope;
+                let seen = width / (1.0 - xi * xi + width).sqrt();
+                if seen < thinnest.0 {
+                    thinnest = (seen, Stretch::Layer { centre: xi, width });
+                }
+            }
+        }
+        thinnest.1
     }
 
     /// Taylor coefficients of η about a point: η', η''/2, … to h^order.
@@ -137,21 +168,28 @@ mod tests {
         }
     }
 
-    /// F(η) = η: d/dξ and d²/dξ² by differences of η(ξ).
+    /// F(η) = η: its derivatives are those of asinh.
     #[test]
     fn derivatives_through_the_map() {
-        let layer = Stretch::Layer {
-            centre: -0.2,
-            width: 0.1,
-        };
-        for xi in [-0.9, -0.25, 0.0, 0.6] {
-            let eta = |s: f64| layer.eta(xi + s);
-            let found = layer.compose(xi, &[eta(0.0), 1.0, 0.0]);
-            let h = 1e-4;
-            let first = (eta(h) - eta(-h)) / (2.0 * h);
-            let second = (eta(h) - 2.0 * eta(0.0) + eta(-h)) / (h * h);
-            assert!((found[1] - first).abs() < 1e-4 * first.abs());
-            assert!((found[2] - second).abs() < 1e-3 * second.abs().max(1.0));
+        let (centre, width) = (0.3, 0.02);
+        let layer = Stretch::Layer { centre, width };
+        let rate = 0.5 * (((1.0 - centre) / width).asinh() + ((1.0 + centre) / width).asinh());
+        for xi in [-0.9, 0.2, 0.29, 0.3, 0.8] {
+            let s: f64 = xi - centre;
+            let square = s * s + width * width;
+            let found = layer.compose(xi, &[layer.eta(xi), 1.0, 0.0, 0.0]);
+            let exact = [
+                1.0 / square.sqrt(),
+                -s / square.powf(1.5),
+                (2.0 * s * s - width * width) / square.powf(2.5),
+            ];
+            for (found, exact) in found[1..].iter().zip(exact) {
+                let exact = exact / rate;
+                assert!(
+                    (found - exact).abs() < 1e-12 * exact.abs() + 1e-9,
+                    "{found} for {exact}"
+                );
+            }
         }
     }
 }

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 /// A family of points; the number is the count of points.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub enum GridKind {
+pub(super) enum GridKind {
     /// Zeros of T_n.
     Gauss(usize),
     /// Extrema of T_(n−1), ends included.
@@ -44,7 +44,7 @@ impl GridKind {
 
 /// Points in increasing order.
 #[derive(Clone, Debug)]
-pub struct Grid {
+pub(super) struct Grid {
     /// Which family.
     pub kind: GridKind,
     /// ξ in [−1, 1].
@@ -73,11 +73,6 @@ impl Grid {
     /// Number of points.
     pub fn len(&self) -> usize {
         self.nodes.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.nodes.is_empty()
     }
 
     /// Barycentric weights up to a common factor.
@@ -177,7 +172,7 @@ fn lobatto(n: usize) -> Vec<f64> {
 }
 
 /// Clenshaw–Curtis weights for the n extrema on [−1, 1]: exact for polynomials of degree n − 1.
-pub fn clenshaw_curtis(n: usize) -> Vec<f64> {
+pub(super) fn clenshaw_curtis(n: usize) -> Vec<f64> {
     if n == 1 {
         return vec![2.0];
     }
@@ -197,7 +192,7 @@ pub fn clenshaw_curtis(n: usize) -> Vec<f64> {
 }
 
 /// Chebyshev coefficients of the interpolant through values at the extrema (increasing ξ).
-pub fn coefficients(values: &[f64]) -> Vec<f64> {
+pub(super) fn coefficients(values: &[f64]) -> Vec<f64> {
     let n = values.len();
     if n == 1 {
         return values.to_vec();

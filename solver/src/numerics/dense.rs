@@ -5,7 +5,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::Perm;
 use faer::traits::ComplexField;
-use faer::{Conj, Mat, MatMut, MatRef, Spec, get_global_parallelism};
+use faer::{Conj, Mat, MatMut, MatRef, Par, Spec};
 
 /// Real or complex scalars.
 pub trait Scalar: ComplexField + Copy + Send + Sync + std::fmt::Debug {
@@ -138,7 +138,8 @@ impl<T: Scalar> Factorised<T> {
             || scale_entries(&mut matrix, &scale),
         );
         let (mut forward, mut backward) = (vec![0; n], vec![0; n]);
-        let (parallel, spec) = (get_global_parallelism(), Spec::default());
+        // Parallelism is over points; a matrix belongs to one thread.
+        let (parallel, spec) = (Par::Seq, Spec::default());
         let scratch = factor::lu_in_place_scratch::<usize, T>(n, n, parallel, spec);
         factor::lu_in_place(
             matrix.as_mut(),
@@ -183,7 +184,7 @@ impl<T: Scalar> Factorised<T> {
             .map(|(b, s)| b.times(*s))
             .collect();
         let (n, factors) = (x.len(), self.factors.as_ref());
-        let parallel = get_global_parallelism();
+        let parallel = Par::Seq;
         let scratch = solve::solve_in_place_scratch::<usize, T>(n, 1, parallel);
         solve::solve_in_place_with_conj(
             factors,
@@ -205,7 +206,7 @@ impl<T: Scalar> Factorised<T> {
         let scaled = right.iter().zip(&self.columns);
         let mut x: Vec<T> = scaled.map(|(b, c)| b.times(*c)).collect();
         let (n, factors) = (x.len(), self.factors.as_ref());
-        let parallel = get_global_parallelism();
+        let parallel = Par::Seq;
         let scratch = solve::solve_transpose_in_place_scratch::<usize, T>(n, 1, parallel);
         solve::solve_transpose_in_place_with_conj(
             factors,

@@ -1,0 +1,125 @@
+//! Two-sided inverse iteration: an eigenvalue of L x = c M0 x with both vectors, one factorisation.
+
+use super::dense::{Factorised, Scalar, dot, norm, scaled};
+use crate::model::C64;
+use faer::Mat;
+
+const MOST_ITERATIONS: usize = 30;
+
+/// An eigenvalue of a pencil with its vectors, each of size one.
+#[derive(Clone, Debug)]
+pub struct Eigen<T> {
+    /// L x = c M0 x
+    pub c: C64,
+    /// x
+    pub right: Vec<T>,
+    /// yᴴ L = c yᴴ M0
+    pub left: Vec<T>,
+}
+
+/// A matrix that is applied, from both sides.
+pub trait Applied<T> {
+    /// A x
+    fn apply(&self, x: &[T]) -> Vec<T>;
+    /// Aᴴ y
+    fn apply_adjoint(&self, y: &[T]) -> Vec<T>;
+}
+
+/// A shift next to an eigenvalue: off it by a little, so that the matrix can be factorised.
+pub fn beside(c: C64, scale: f64) -> C64 {
+    c + C64::new(1e-7 * c.norm().max(1e-3 * scale), 0.0)
+}
+
+/// The eigenvalue nearest to σ = `shift` from starts of both vectors, `shifted` being σ M0 − L; nothing where it does
+/// not settle. `scale` is a size of eigenvalues below which none is told from zero.
+pub fn inverse_iteration<T: Scalar>(
+    shifted: Mat<T>,
+    mass: &impl Applied<T>,
+    shift: C64,
+    scale: f64,
+    (right, left): (Vec<T>, Vec<T>),
+) -> Option<Eigen<T>> {
+    let factorised = Factorised::new(shifted);
+    let (mut x, mut y);
+    let mut mass_x = mass.apply(&right);
+    let mut mass_y = mass.apply_adjoint(&left);
+    let (mut c, mut change) = (shift, f64::INFINITY);
+    for iteration in 0..MOST_ITERATIONS {
+        let new_x = factorised.solve(&mass_x);
+        let new_y = factorised.solve_adjoint(&mass_y);
+        let (size_x, size_y) = (norm(&new_x), norm(&new_y));
+        if !(size_x.is_finite() && size_y.is_finite()) || size_x == 0.0 || size_y == 0.0 {
+            return None;
+        }
+        let new_mass_x = mass.apply(&new_x);
+        // (σ M0 − L) x_new = M0 x_old
+        let denominator = dot(&new_y, &new_mass_x);
+        if denominator.norm() == 0.0 {
+            return None;
+        }
+        let next = shift - dot(&new_y, &mass_x) / denominator;
+        x = scaled(&new_x, 1.0 / size_x);
+        y = scaled(&new_y, 1.0 / size_y);
+        mass_x = scaled(&new_mass_x, 1.0 / size_x);
+        mass_y = mass.apply_adjoint(&y);
+        let step = (next - c).norm();
+        c = next;
+        // The eigenvalue converges twice as fast as the vectors: one more turn after it settles.
+        let floor = 1e-14 * c.norm().max((shift - c).norm()) + 1e-17 * scale;
+        let small = step < 1e-10 * c.norm().max(1e-6 * scale) && step >= 0.5 * change;
+        if iteration > 0 && (step <= floor || small) {
+            return Some(Eigen {
+                c,
+                right: x,
+                left: y,
+            });
+        }
+        change = step;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Applied, beside, inverse_iteration};
+    use crate::model::C64;
+    use faer::{Mat, mat};
+
+    struct Dense(Mat<f64>);
+
+    impl Applied<f64> for Dense {
+        fn apply(&self, x: &[f64]) -> Vec<f64> {
+            crate::numerics::dense::apply(self.0.as_ref(), x)
+        }
+
+        fn apply_adjoint(&self, y: &[f64]) -> Vec<f64> {
+            crate::numerics::dense::apply(self.0.transpose(), y)
+        }
+    }
+
+    /// x' = −3x + 2y, 2y' = 4x − 2y − z, 0 = x − z: x' = −3x + 2y, y' = 1.5x − y, so that c² + 4c = 0.
+    #[test]
+    fn a_pencil_with_a_constraint() {
+        let operator = mat![[-3.0, 2.0, 0.0], [4.0, -2.0, -1.0], [1.0, 0.0, -1.0]];
+        let mass = Dense(mat![[1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 0.0]]);
+        for exact in [0.0, -4.0] {
+            let shift = beside(C64::new(exact + 1e-3, 0.0), 1.0);
+            let shifted = Mat::from_fn(3, 3, |i, j| shift.re * mass.0[(i, j)] - operator[(i, j)]);
+            let starts = (vec![1.0, 0.3, 0.7], vec![0.2, 1.0, -0.4]);
+            let found = inverse_iteration(shifted, &mass, shift, 1.0, starts).expect("a mode");
+            assert!((found.c - exact).norm() < 1e-13, "{}", found.c);
+            // x = (2, 3 + c, 2); of the left vector yᴴ(L − c M0) = 0.
+            let expected = [2.0, 3.0 + exact, 2.0];
+            for i in 0..3 {
+                let ratio = found.right[i] / found.right[0];
+                assert!((ratio - expected[i] / expected[0]).abs() < 1e-12);
+            }
+            for j in 0..3 {
+                let sum: f64 = (0..3)
+                    .map(|i| found.left[i] * (operator[(i, j)] - exact * mass.0[(i, j)]))
+                    .sum();
+                assert!(sum.abs() < 1e-12, "column {j}: {sum}");
+            }
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Methods that know no model: dense linear algebra, Newton's method, inverse iteration, roots.
+
+pub mod dense;
+mod inverse_iteration;
+mod newton;
+mod root;
+
+pub use inverse_iteration::{Applied, Eigen, beside, inverse_iteration};
+pub use newton::{Failure, Linearised, Newton, System};
+pub use root::brent;

@@ -1,0 +1,322 @@
+//! An operator collocated: block (row, column) = Σ diag(coefficient) · (i k)^a |k|^b · ∂y^d, and its boundary
+//! conditions.
+
+use super::basis::{Profile, Turn, Turned};
+use super::block::{Block, Blocks};
+use super::closure::Border;
+use crate::model::{BalanceId, C64, End, FieldId, Id, Jet, Table};
+use crate::numerics::dense::{Scalar, bordered};
+use crate::space::{Layout, Points, Space};
+use faer::Mat;
+use std::collections::BTreeMap;
+
+/// What is assembled: `mass`·M0 + `operator`·L, and `walls` times the boundary conditions.
+#[derive(Clone, Copy)]
+pub struct Combination {
+    /// The factor of M0.
+    pub mass: C64,
+    /// The factor of L.
+    pub operator: C64,
+    /// The factor of the boundary conditions.
+    pub walls: f64,
+}
+
+impl Combination {
+    /// M0 alone.
+    pub const MASS: Combination = Combination {
+        mass: C64::new(1.0, 0.0),
+        operator: C64::new(0.0, 0.0),
+        walls: 0.0,
+    };
+
+    /// L with the boundary conditions.
+    pub const OPERATOR: Combination = Combination {
+        mass: C64::new(0.0, 0.0),
+        operator: C64::new(1.0, 0.0),
+        walls: 1.0,
+    };
+
+    /// σ M0 − L, the boundary conditions being rows of L without mass.
+    pub const fn shifted(shift: C64) -> Self {
+        Combination {
+            mass: shift,
+            operator: C64::new(-1.0, 0.0),
+            walls: -1.0,
+        }
+    }
+
+    /// L − c M0 with the boundary conditions.
+    pub fn at_eigenvalue(c: C64) -> Self {
+        Combination {
+            mass: -c,
+            ..Combination::OPERATOR
+        }
+    }
+}
+
+/// One boundary condition: Σ coefficient · Π jets, jets of one column or of several.
+#[derive(Clone, Debug)]
+pub struct WallRow<Column> {
+    /// Where it holds.
+    pub end: End,
+    /// Its linear part: jet and coefficient.
+    pub linear: Vec<(Jet<Column>, f64)>,
+    /// Products of jets with their coefficients.
+    pub nonlinear: Vec<(Vec<Jet<Column>>, f64)>,
+}
+
+/// A term with its coefficient at each point of its row.
+pub(super) struct CollocatedTerm<Row, Column> {
+    pub row: Row,
+    pub jet: Jet<Column>,
+    pub coefficients: Vec<f64>,
+}
+
+/// An operator from columns to rows with mass matrix and boundary conditions.
+pub struct LinearProblem<Row, Column> {
+    /// Where it is collocated.
+    pub space: Space,
+    /// Where unknowns and equations stand.
+    pub layout: Layout<Row, Column>,
+    /// The boundary conditions.
+    pub walls: Vec<WallRow<Column>>,
+    pub(super) terms: Vec<CollocatedTerm<Row, Column>>,
+    /// The powers of i by which columns and rows are divided to make matrices real; ones without the symmetry.
+    pub(super) column_turns: Table<Column, Turn>,
+    pub(super) row_turns: Table<Row, Turn>,
+}
+
+/// L and M0: from fields to balances.
+pub type Direct = LinearProblem<BalanceId, FieldId>;
+
+/// L† and M0†: from the adjoint fields of balances to fields.
+pub type Adjoint = LinearProblem<FieldId, BalanceId>;
+
+/// (i k)^x |k|^absx
+pub fn symbol<V>(jet: &Jet<V>, k: f64) -> C64 {
+    Turn::new(jet.x).factor() * (k.powi(i32::from(jet.x)) * k.abs().powi(i32::from(jet.absx)))
+}
+
+impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
+    /// The factor of a jet at wavenumber k in the solver's basis, its row divided by `row`.
+    fn symbol(&self, jet: &Jet<Column>, k: f64, row: Turn) -> C64 {
+        let turn = Turn::new(jet.x) + self.column_turns[jet.of] - row;
+        let size = k.powi(i32::from(jet.x)) * k.abs().powi(i32::from(jet.absx));
+        turn.factor() * size
+    }
+
+    /// What makes a wall's row real: i for a condition that is odd in the mirror.
+    pub(super) fn wall_turn(&self, wall: &WallRow<Column>) -> Turn {
+        let first = wall.linear.first().map(|(jet, _)| *jet);
+        first.map_or(Turn::default(), |jet| {
+            Turn::of((self.column_turns[jet.of] + Turn::new(jet.x)).is_odd())
+        })
+    }
+
+    /// The factor by which a wall's right-hand side enters the solver's basis.
+    pub fn wall_factor(&self, wall: &WallRow<Column>) -> C64 {
+        if self
+            .column_turns
+            .iter()
+            .all(|&turn| turn == Turn::default())
+        {
+            return C64::new(1.0, 0.0);
+        }
+        (-self.wall_turn(wall)).factor()
+    }
+
+    /// What a physical value of a column is in units of one in the solver's basis.
+    pub fn column_factor(&self, column: Column) -> C64 {
+        self.column_turns[column].factor()
+    }
+
+    /// The factor by which a row's right-hand side enters the solver's basis.
+    pub fn row_factor(&self, row: Row) -> C64 {
+        (-self.row_turns[row]).factor()
+    }
+
+    /// Physical values of the unknowns from those in the solver's basis.
+    pub fn physical<T: Scalar>(&self, x: &[T]) -> Profile {
+        let mut values = Profile::zero(self.layout.size);
+        for (column, block) in self.layout.columns.pairs() {
+            let factor = self.column_turns[column].factor();
+            for i in block.range() {
+                values[i] = x[i].complex() * factor;
+            }
+        }
+        values
+    }
+
+    /// Physical values in the solver's basis.
+    pub fn turned(&self, values: &Profile) -> Turned {
+        let mut turned = Turned(values.to_vec());
+        for (column, block) in self.layout.columns.pairs() {
+            let factor = (-self.column_turns[column]).factor();
+            turned[block.range()].iter_mut().for_each(|v| *v *= factor);
+        }
+        turned
+    }
+
+    /// A combination of L and M0 at wavenumber k, to be applied or written out.
+    pub fn blocks<T: Scalar>(&self, k: f64, combination: Combination) -> Blocks<T> {
+        self.assemble(combination, &|jet, turn| self.symbol(jet, k, turn))
+    }
+
+    /// The same as a matrix.
+    pub fn matrix<T: Scalar>(&self, k: f64, combination: Combination) -> Mat<T> {
+        self.blocks(k, combination).dense()
+    }
+
+    /// M0 at wavenumber k.
+    pub fn mass<T: Scalar>(&self, k: f64) -> Blocks<T> {
+        self.blocks(k, Combination::MASS)
+    }
+
+    /// L and M0 at wavenumber k, boundary conditions as rows of L with no mass.
+    pub fn pencil<T: Scalar>(&self, k: f64) -> (Mat<T>, Mat<T>) {
+        (
+            self.matrix(k, Combination::OPERATOR),
+            self.matrix(k, Combination::MASS),
+        )
+    }
+
+    /// d^order/dk^order of a combination at k ≠ 0.
+    pub fn wavenumber_derivative(
+        &self,
+        k: f64,
+        combination: Combination,
+        order: u8,
+    ) -> Blocks<C64> {
+        self.assemble(combination, &|jet, turn| {
+            let power = f64::from(jet.x) + f64::from(jet.absx);
+            let factors = (0..order).map(|i| (power - f64::from(i)) / k);
+            self.symbol(jet, k, turn) * factors.product::<f64>()
+        })
+    }
+
+    /// The rows of `combination`, block by block, then its walls.
+    fn assemble<T: Scalar>(
+        &self,
+        combination: Combination,
+        symbol: &impl Fn(&Jet<Column>, Turn) -> C64,
+    ) -> Blocks<T> {
+        // Terms that share a block and a y-order share one differentiation matrix.
+        let mut sums: BTreeMap<(Row, Column, usize), Vec<T>> = BTreeMap::new();
+        let zero = C64::new(0.0, 0.0);
+        for CollocatedTerm {
+            row,
+            jet,
+            coefficients,
+        } in &self.terms
+        {
+            if self.layout.columns.find(jet.of).is_none() {
+                continue;
+            }
+            let weight = if jet.t > 0 {
+                combination.mass
+            } else {
+                combination.operator
+            };
+            if weight == zero {
+                continue;
+            }
+            let factor = weight * symbol(jet, self.row_turns[*row]);
+            if factor == zero {
+                continue;
+            }
+            let factor = T::from_complex(factor);
+            let sum = sums
+                .entry((*row, jet.of, usize::from(jet.y)))
+                .or_insert_with(|| vec![T::from_complex(zero); coefficients.len()]);
+            for (s, c) in sum.iter_mut().zip(coefficients) {
+                *s += factor.times(*c);
+            }
+        }
+        let block = |((row, column, order), coefficients): ((Row, Column, usize), Vec<T>)| {
+            let (rows, columns) = (&self.layout.rows[row], &self.layout.columns[column]);
+            let derivative = self.space.derivative(columns.points, rows.points, order);
+            Block::new(rows.offset, columns.offset, derivative, coefficients)
+        };
+        let mut blocks: Vec<Block<T>> = sums.into_iter().map(block).collect();
+        if combination.walls != 0.0 {
+            self.add_walls(&mut blocks, combination.walls, symbol);
+        }
+        Blocks::new(self.layout.size, blocks)
+    }
+
+    fn add_walls<T: Scalar>(
+        &self,
+        blocks: &mut Vec<Block<T>>,
+        weight: f64,
+        symbol: &impl Fn(&Jet<Column>, Turn) -> C64,
+    ) {
+        for (index, wall) in self.walls.iter().enumerate() {
+            let (turn, to) = (self.wall_turn(wall), Points::end(wall.end));
+            for (jet, coefficient) in &wall.linear {
+                let Some(columns) = self.layout.columns.find(jet.of) else {
+                    continue;
+                };
+                let factor = symbol(jet, turn) * (weight * coefficient);
+                let order = usize::from(jet.y);
+                let derivative = self.space.derivative(columns.points, to, order);
+                let row = self.layout.walls + index;
+                let own = vec![T::from_complex(factor)];
+                blocks.push(Block::new(row, columns.offset, derivative, own));
+            }
+        }
+    }
+
+    /// Σ |coefficient| |k|^a (2/h)^d over the chosen terms of a row, at each of its points.
+    pub(super) fn term_sizes(
+        &self,
+        row: Row,
+        k: f64,
+        chosen: impl Fn(&Jet<Column>) -> bool,
+    ) -> Vec<f64> {
+        let mut sums = vec![0.0; self.layout.rows[row].len];
+        let own = self.terms.iter().filter(|term| term.row == row);
+        for term in own.filter(|term| chosen(&term.jet)) {
+            let jet = &term.jet;
+            let size = k.abs().powi(i32::from(jet.x + jet.absx))
+                * self.space.rate().powi(i32::from(jet.y));
+            for (sum, c) in sums.iter_mut().zip(&term.coefficients) {
+                *sum += c.abs() * size;
+            }
+        }
+        sums
+    }
+
+    /// Whether a row holds the time derivative of a column.
+    pub(super) fn has_mass(&self, row: Row, column: Column) -> bool {
+        let mut own = self.terms.iter().filter(|term| term.row == row);
+        own.any(|term| term.jet.t > 0 && term.jet.of == column)
+    }
+}
+
+/// A pencil with borders that have no mass.
+pub(super) fn with_borders<T: Scalar>(
+    (operator, mass): (Mat<T>, Mat<T>),
+    borders: &[Border],
+) -> (Mat<T>, Mat<T>) {
+    let n = mass.nrows();
+    let size = n + borders.len();
+    let mass = Mat::from_fn(size, size, |i, j| {
+        if i < n && j < n {
+            mass[(i, j)]
+        } else {
+            T::zero_impl()
+        }
+    });
+    (bordered_by(operator, borders), mass)
+}
+
+/// [A c; r 0]
+pub(super) fn bordered_by<T: Scalar>(matrix: Mat<T>, borders: &[Border]) -> Mat<T> {
+    let real = |value: f64| T::from_complex(C64::new(value, 0.0));
+    let borders = borders.iter().map(|border| {
+        let column = border.column.iter().map(|&v| real(v)).collect();
+        let row = border.row.iter().map(|&v| real(v)).collect();
+        (column, row)
+    });
+    bordered(&matrix, &borders.collect::<Vec<_>>())
+}
