@@ -180,44 +180,7 @@ fn printed_bottom_condition_is_a_misprint() {
 /// Another closure: Enskog disks, imported in place of the first, with viscosities of its own.
 #[test]
 fn second_closure() {
-    let spec =
-        std::fs::read_to_string(root().join("spec/models/vibrated_bed.model")).expect("the spec");
-    let line = "use laws::grossman::{pressure as p, conductivity as kappa, dissipation as D};";
-    let other = "use laws::jenkins_richman::{pressure as p, conductivity as kappa, dissipation as D, shear_viscosity, bulk_viscosity};";
-    // The first closure has its viscosities in the model, this one brings its own.
-    let changed = spec
-        .replace(line, other)
-        .replace(
-            "select viscosity { constant_prandtl: Pr, variable_prandtl: prandtl }*kappa",
-            "shear_viscosity",
-        )
-        .replace(
-            "select bulk { none: 0, spheres: bulk_viscosity_spheres, disks: bulk_viscosity_disks }",
-            "bulk_viscosity",
-        )
-        .lines()
-        .filter(|l| {
-            ![
-                "use laws::hard_particles",
-                "    Pr = ",
-                "    viscosity  =",
-                "    bulk       =",
-            ]
-            .iter()
-            .any(|s| l.starts_with(s))
-        })
-        .filter(|l| !l.contains("Pr constant, or") && !l.contains("bulk viscosity: none"))
-        .collect::<Vec<_>>()
-        .join("\n");
-    let folder = tempfile::tempdir().expect("a folder");
-    std::fs::create_dir(folder.path().join("laws")).expect("a folder");
-    std::fs::copy(
-        root().join("spec/laws/jenkins_richman.law"),
-        folder.path().join("laws/jenkins_richman.law"),
-    )
-    .expect("a law");
-    let path = folder.path().join("disks.model");
-    std::fs::write(&path, changed).expect("a file");
+    let path = root().join("spec/studies/vibrated_disks.model");
     let base = json(&format!("base {} --set H=70 --points 2001", path.display()));
     close("n(0)", number(&base, "/profiles/n/0"), 0.0546406, 6e-8);
     // The reference's largest density, 0.15006, is the largest value at the 71 Gauss–Lobatto points

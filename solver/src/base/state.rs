@@ -224,13 +224,17 @@ impl BaseState {
         if worst.excess <= 1.0 {
             return Ok(());
         }
-        Err(Error::computation(format!(
-            "the base state does not satisfy {}: residual {:.3e} at {} = {}",
-            worst.of,
-            worst.value,
-            structure.coordinate.as_deref().unwrap_or("y"),
-            worst.place
-        )))
+        let place = structure.coordinate.as_ref();
+        let place = place.map_or(String::new(), |name| {
+            format!(" at {name} = {}", worst.place)
+        });
+        Err(Error::computation(match worst.value.is_finite() {
+            true => format!(
+                "the base state does not satisfy {}: residual {:.3e}{place}",
+                worst.of, worst.value
+            ),
+            false => format!("the base state has no value in {}{place}", worst.of),
+        }))
     }
 
     /// Fields must stay in the ranges that the spec declares, but for the truncation error.
