@@ -20,6 +20,7 @@ pub mod derive;
 pub mod diagnostic;
 pub mod emit;
 pub mod errata;
+pub mod expression;
 pub mod graph;
 pub mod kernel;
 pub mod model;

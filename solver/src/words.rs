@@ -34,6 +34,21 @@ pub fn parameters(setup: &Setup, parameters: &Parameters) -> Value {
     Value::Object(map)
 }
 
+/// The parameters that are not at their defaults, and the wavenumber: `S = 200, k = 0.16`.
+pub fn changed(setup: &Setup, k: f64) -> String {
+    let structure = setup.model.structure();
+    let own = structure.parameters.pairs().filter_map(|(id, info)| {
+        let value = match setup.parameters.automatic[id] {
+            true => "auto".to_owned(),
+            false => setup.parameters.shown(structure, id),
+        };
+        let moved = setup.parameters.automatic[id] || setup.parameters.values[id] != info.default;
+        moved.then(|| format!("{} = {value}", info.name))
+    });
+    let all: Vec<String> = own.chain([format!("k = {k}")]).collect();
+    all.join(", ")
+}
+
 /// A number without the part that its error leaves nothing of.
 pub fn settled(value: C64, error: f64) -> C64 {
     let part = |x: f64| if x.abs() <= 1e-2 * error { 0.0 } else { x };

@@ -5,6 +5,7 @@
 
 #![warn(missing_docs)]
 
+mod expression;
 mod ids;
 mod jet;
 mod kernel;
@@ -17,6 +18,7 @@ mod state;
 mod structure;
 mod tape;
 
+pub use expression::Expression;
 pub use ids::{BalanceId, BaseRowId, CaseId, FieldId, Id, LawId, ParameterId, SolvedId, Table};
 pub use jet::{End, Function, Jet, Operator, jet};
 pub use kernel::{

@@ -8,3 +8,4 @@ mod program;
 pub use assemble::kernels;
 pub use landau_contract::{Array, Kernel, ModelKernels, Operation, Register};
 pub use lower::Lowering;
+pub(crate) use program::jets;

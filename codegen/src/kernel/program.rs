@@ -159,15 +159,16 @@ impl Assembler<'_> {
 }
 
 fn residual_jets(graph: &Graph, residuals: &[(ResidualId, Vec<Id>)]) -> Vec<Jet> {
-    let roots: Vec<Id> = residuals
-        .iter()
-        .flat_map(|(_, ids)| ids.iter().copied())
-        .collect();
-    let mut jets = BTreeSet::new();
-    for node in graph.topological(&roots) {
-        if let Node::Jet(jet) = graph.node(node) {
-            jets.insert(*jet);
-        }
-    }
-    jets.into_iter().collect()
+    let roots = residuals.iter().flat_map(|(_, ids)| ids.iter().copied());
+    jets(graph, &roots.collect::<Vec<Id>>())
+}
+
+/// The derivatives of fields that expressions hold.
+pub(crate) fn jets(graph: &Graph, roots: &[Id]) -> Vec<Jet> {
+    let nodes = graph.topological(roots).into_iter();
+    let jets = nodes.filter_map(|node| match graph.node(node) {
+        Node::Jet(jet) => Some(*jet),
+        _ => None,
+    });
+    jets.collect::<BTreeSet<Jet>>().into_iter().collect()
 }

@@ -143,7 +143,7 @@ pub enum Command {
     },
     /// The fields over the (x, y)-plane, as pictures and as data.
     #[command(
-        after_help = "Examples:\n  landau pattern my.model --k 0.16 --out pattern.svg --out pattern.npz\n  landau pattern my.model --k 0.16 --amplitude 0.1 --shade T --arrows u,v --out pattern.vtk"
+        after_help = "Examples:\n  landau pattern my.model --k 0.16 --out pattern.svg --out pattern.npz\n  landau pattern my.model --k 0.16 --amplitude 0.1 --shade T --arrows u,v --out pattern.vtk\n  landau pattern my.model --k 3 --shade \"1 - y + theta\" --perturbation --out heat.svg"
     )]
     Pattern {
         /// A built model, or the path of a .model file.
@@ -239,6 +239,10 @@ pub struct SweepOptions {
     /// A picture of growth rate, c2 and amplitude over the first axis.
     #[arg(long, value_name = "FILE.svg")]
     pub plot: Option<PathBuf>,
+    /// A further column (repeatable): an output of the model by name, at the equilibrium amplitude; or an expression in
+    /// the base state, as `S*T at upper`, `T at lower`, `integral(n)`.
+    #[arg(long, value_name = "COLUMN")]
+    pub column: Vec<String>,
     /// Compute one share of the sweep, to be merged; `slurm` takes that of the task of a job array.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["plot", "emit"])]
     pub shard: Option<String>,
@@ -287,9 +291,12 @@ pub struct PatternOptions {
     /// Points along x and y.
     #[arg(long, value_name = "NXxNY", default_value = "161x81")]
     pub points: String,
-    /// The field that is shaded; the first by default.
-    #[arg(long, value_name = "FIELD")]
+    /// What is shaded, a field or any expression of the spec language; the first field by default.
+    #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
     pub shade: Option<String>,
+    /// Draw the perturbation alone, without the base state.
+    #[arg(long)]
+    pub perturbation: bool,
     /// The fields that are drawn as arrows, along and across; none by default.
     #[arg(long, value_name = "FIELD,FIELD")]
     pub arrows: Option<String>,

@@ -1,13 +1,11 @@
 //! Commands that compute nothing: models, check, explain.
 
 use crate::arguments::{Format, OperatorName};
-use landau_codegen::Sources;
 use landau_codegen::derive::Derivation;
-use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::text::{self, Section, Typeset};
 use landau_codegen::generate;
 use landau_codegen::graph::{Latex, Notation, Plain};
-use landau_report::library::{Library, taped};
+use landau_report::library::{Library, sources, taped};
 use landau_report::reproduce::{Errata, Formulas, all_explained};
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{CaseInfo, ClosureKind, Model};
@@ -200,22 +198,7 @@ pub fn explain_against(model: &dyn Model, file: &Path, format: Format) -> Result
 
 /// The derivation of a model from the sources that it carries.
 fn derive(model: &dyn Model) -> Result<Derivation> {
-    let mut files = model
-        .sources()
-        .into_iter()
-        .map(|(path, text)| SourceFile { path, text });
-    let spec = files
-        .next()
-        .ok_or_else(|| Error::input("the model has no source"))?;
-    let stem = |path: &str| {
-        Path::new(path)
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned()
-    };
-    let laws = files.map(|file| (stem(&file.path), file)).collect();
-    let (derivation, _) = generate(&Sources { spec, laws })
+    let (derivation, _) = generate(&sources(model)?)
         .map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))?;
     Ok(derivation)
 }

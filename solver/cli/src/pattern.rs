@@ -4,12 +4,14 @@ use crate::arguments::{Common, PatternOptions};
 use crate::asked::asked;
 use landau_report::data::FORMATS;
 use landau_report::data::plane::{attributes, dataset};
-use landau_report::figure::{pattern_lines, pattern_pair};
+use landau_report::figure::{Part, pattern_lines, pattern_pair};
+use landau_report::library::expression;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::write_whole;
-use landau_solver::model::FieldId;
+use landau_solver::model::{Expression, FieldId};
 use landau_solver::study::{Setup, check_wavenumber};
 use landau_solver::weakly::{Pattern, Window, pattern as expand};
+use landau_solver::words;
 use serde_json::json;
 
 pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Result<()> {
@@ -43,11 +45,12 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
             ));
         }
     };
-    let found = expand(&point, amplitude, window)?;
+    let expressions = shaded(setup, options)?;
+    let found = expand(&point, amplitude, window, &expressions)?;
     let attributes = attributes(setup, &state.parameters, k, Some(amplitude));
     for path in &options.out {
         if path.extension().is_some_and(|e| e == "svg") {
-            write_whole(path, picture(setup, options, &found)?.as_bytes())?;
+            write_whole(path, picture(setup, options, k, &found)?.as_bytes())?;
         } else {
             dataset(setup, &found, attributes.clone()).write(path)?;
         }
@@ -100,28 +103,50 @@ fn window(options: &PatternOptions) -> Result<Window> {
     })
 }
 
-fn picture(setup: &Setup, options: &PatternOptions, found: &Pattern) -> Result<String> {
+/// What is shaded, where it is no field: compiled.
+fn shaded(setup: &Setup, options: &PatternOptions) -> Result<Vec<Expression>> {
+    let model = setup.model.as_ref();
+    let wanted = options.shade.iter();
+    let wanted = wanted.filter(|text| model.structure().field(text).is_none());
+    wanted.map(|text| expression(model, text)).collect()
+}
+
+fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> Result<String> {
     let field = |name: &str| {
-        found.field(name).ok_or_else(|| {
-            let names = found.names.join(", ");
+        found.quantity(name.trim()).ok_or_else(|| {
+            let names: Vec<&str> = found.fields.iter().map(|f| f.name.as_str()).collect();
             Error::input(format!(
-                "there is no field `{name}`: the profiles are {names}"
+                "there is no field `{name}`: the profiles are {}",
+                names.join(", ")
             ))
         })
     };
+    let part = match options.perturbation {
+        true => Part::Perturbation,
+        false => Part::Total,
+    };
+    let structure = setup.model.structure();
+    let facts = words::changed(setup, k);
     if found.y.len() < 2 {
-        let drawn = pattern_lines(setup.model.structure(), found);
+        let drawn = pattern_lines(structure, found, &facts, part);
         return drawn.ok_or_else(|| Error::computation("the pattern has no finite value"));
     }
-    let shade = options.shade.as_deref().map_or(Ok(FieldId(0)), field)?;
+    let first = &found.fields[FieldId(0)];
+    let shade = options.shade.as_deref().map_or(Ok(first), field)?;
     let arrows = match &options.arrows {
         Some(text) => {
             let (along, across) = text
                 .split_once(',')
                 .ok_or_else(|| Error::input(format!("--arrows {text}: it accepts FIELD,FIELD")))?;
-            Some([field(along.trim())?, field(across.trim())?])
+            Some([field(along)?, field(across)?])
         }
         None => None,
     };
-    Ok(pattern_pair(setup.model.structure(), found, shade, arrows))
+    Ok(pattern_pair(
+        structure,
+        found,
+        &facts,
+        (shade, part),
+        arrows,
+    ))
 }

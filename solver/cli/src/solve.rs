@@ -5,6 +5,7 @@ use crate::asked::{asked, resumed};
 use crate::progress::Bar;
 use crate::{cluster, interrupt, picture};
 use landau_report::figure;
+use landau_report::library::column;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{destination, write_whole};
 use landau_solver::model::{FieldId, Table};
@@ -256,6 +257,11 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
         ranges,
         near: common.near,
         k: options.k,
+        derived: options
+            .column
+            .iter()
+            .map(|text| column(setup.model.as_ref(), text))
+            .collect::<Result<_>>()?,
     };
     if let Some(engine) = options.emit {
         return cluster::emit(engine, options);

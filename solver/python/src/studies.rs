@@ -100,6 +100,7 @@ fn swept(
         ranges,
         near: near.map(|(re, im)| C64::new(re, im)),
         k,
+        derived: Vec::new(),
     })
 }
 
@@ -368,14 +369,14 @@ impl Core {
                 )
             };
             let amplitude = amplitude.or(point.amplitude()).ok_or_else(missing)?;
-            let found = pattern(&point, amplitude, window)?;
-            let fields = found.names.pairs().map(|(field, name)| {
+            let found = pattern(&point, amplitude, window, &[])?;
+            let fields = found.fields.iter().map(|field| {
                 let value = json!({
-                    "base": found.base[field],
-                    "linear": found.linear[field],
-                    "nonlinear": found.nonlinear[field],
+                    "base": field.base,
+                    "linear": field.linear,
+                    "nonlinear": field.nonlinear,
                 });
-                (name.clone(), value)
+                (field.name.clone(), value)
             });
             let fields: Map<String, Value> = fields.collect();
             let object = json!({

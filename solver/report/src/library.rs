@@ -2,9 +2,11 @@
 
 use landau_codegen::build::read_sources;
 use landau_codegen::diagnostic::SourceFile;
+use landau_codegen::expression::compile;
 use landau_codegen::{Sources, tape};
 use landau_solver::error::{Error, Result};
-use landau_solver::model::{Model, TapeModel, nearest};
+use landau_solver::model::{Expression, Model, TapeModel, nearest};
+use landau_solver::study::derived::{Derived, Wanted};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -14,6 +16,48 @@ use std::sync::Arc;
 /// Every mistake of the spec, with its place.
 pub fn taped(sources: &Sources) -> Result<TapeModel> {
     tape(sources).map_err(|mistakes| Error::input(format!("the spec has mistakes\n\n{mistakes}")))
+}
+
+/// The sources of a model as it carries them, its own law files by name.
+///
+/// # Errors
+/// A model that carries none.
+pub fn sources(model: &dyn Model) -> Result<Sources> {
+    let mut files = model
+        .sources()
+        .into_iter()
+        .map(|(path, text)| SourceFile { path, text });
+    let spec = files
+        .next()
+        .ok_or_else(|| Error::input("the model has no source"))?;
+    let stem = |path: &str| {
+        let stem = Path::new(path).file_stem().unwrap_or_default();
+        stem.to_string_lossy().into_owned()
+    };
+    let laws = files.map(|file| (stem(&file.path), file)).collect();
+    Ok(Sources { spec, laws })
+}
+
+/// An expression in the names of a model's spec, compiled for it.
+///
+/// # Errors
+/// Mistakes of the expression, with their place.
+pub fn expression(model: &dyn Model, text: &str) -> Result<Expression> {
+    let state = model.structure().state();
+    compile(&sources(model)?, state, text).map_err(|mistakes| {
+        Error::input(format!(
+            "`{text}` is no expression of the model\n\n{mistakes}"
+        ))
+    })
+}
+
+/// A column of a table, as a text asks for it.
+///
+/// # Errors
+/// As [`Wanted::parse`] and [`expression`].
+pub fn column(model: &dyn Model, text: &str) -> Result<Derived> {
+    let wanted = Wanted::parse(&model.structure().outputs, text)?;
+    wanted.column(text, |text| expression(model, text))
 }
 
 /// The models of a crate.

@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod amplitudes;
 pub mod critical;
+pub mod derived;
 mod journal;
 pub use journal::journal_path;
 pub use progress::{Progress, Silent};

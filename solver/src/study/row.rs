@@ -54,6 +54,9 @@ pub struct Row {
     pub second_harmonic: Option<f64>,
     /// `ok`, or why there is no number, or what is near.
     pub status: String,
+    /// The columns that were asked for besides.
+    #[serde(default)]
+    pub derived: Vec<Option<f64>>,
 }
 
 /// A column of the table that can be drawn.
@@ -97,9 +100,10 @@ pub fn column(rows: &[Row], column: Column) -> Vec<(f64, f64)> {
 
 impl Row {
     /// The row of a point without an answer.
-    pub(super) fn failed(coordinates: Vec<f64>, error: &Error) -> Self {
+    pub(super) fn failed(coordinates: Vec<f64>, error: &Error, derived: usize) -> Self {
         Row {
             coordinates,
+            derived: vec![None; derived],
             status: error.to_string(),
             ..Row::default()
         }
@@ -121,7 +125,7 @@ impl Row {
         ]
     }
 
-    /// Its cells: the coordinates, then [`COLUMNS`]; what is missing is empty.
+    /// Its cells: the coordinates, [`COLUMNS`], derived columns; what is missing is empty.
     fn record(&self) -> Vec<String> {
         let number = |value: &Option<f64>| value.map_or(String::new(), |v| format!("{v:e}"));
         let numbers: Vec<String> = self.numbers().iter().map(number).collect();
@@ -130,6 +134,7 @@ impl Row {
         record.push(self.bifurcation.clone());
         record.extend_from_slice(&numbers[7..]);
         record.push(self.status.clone());
+        record.extend(self.derived.iter().map(number));
         record
     }
 }

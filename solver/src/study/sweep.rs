@@ -4,6 +4,7 @@
 //! two ends (the more unstable one leads) and follows it by shape, so a row does not depend on how
 //! many threads there are, or on where an earlier run was interrupted.
 
+use super::derived::Derived;
 use super::journal::Journal;
 use super::point::UNCONVERGED;
 use super::row::{COLUMNS, Row, table};
@@ -45,6 +46,8 @@ pub struct Sweep<'s> {
     pub near: Option<C64>,
     /// The wavenumber, where no range varies it.
     pub k: Option<f64>,
+    /// Columns besides those of every point.
+    pub derived: Vec<Derived>,
 }
 
 /// What a run of a sweep found beside its output.
@@ -222,6 +225,7 @@ impl Sweep<'_> {
                 &places,
                 |carried: &Carried| carried.pair.c.re,
                 step,
+                self.derived.len(),
                 progress,
             );
         }
@@ -236,6 +240,7 @@ impl Sweep<'_> {
                 &places,
                 |pair: &EigenPair| pair.c.re,
                 step,
+                self.derived.len(),
                 progress,
             ))
         });
@@ -243,7 +248,7 @@ impl Sweep<'_> {
             progress.advance(places.len());
             places
                 .into_iter()
-                .map(|place| Row::failed(place, &error))
+                .map(|place| Row::failed(place, &error, self.derived.len()))
                 .collect()
         })
     }
@@ -289,10 +294,17 @@ impl Sweep<'_> {
         let pair = weakly::select(&collocations.own, k, selection)?;
         // Where c2 has no answer, the mode is still there to be followed.
         let row = match weakly::from_pair(&collocations.own, pair.clone()) {
-            Ok(point) => row(collocations, place, &point)?,
+            Ok(point) => {
+                let row = row(collocations, place, &point)?;
+                let value = |column: &Derived| column.value(&point, row.amplitude);
+                Row {
+                    derived: self.derived.iter().map(value).collect(),
+                    ..row
+                }
+            }
             Err(error) => Row {
                 c0: Some([pair.c.re, pair.c.im]),
-                ..Row::failed(place.to_vec(), &error)
+                ..Row::failed(place.to_vec(), &error, self.derived.len())
             },
         };
         Ok((row, pair))
@@ -300,14 +312,16 @@ impl Sweep<'_> {
 
     pub(super) fn header(&self) -> impl Iterator<Item = &str> {
         let axes = self.ranges.iter().map(|r| r.name.as_str());
-        axes.chain(COLUMNS)
+        let derived = self.derived.iter().map(|column| column.name.as_str());
+        axes.chain(COLUMNS).chain(derived)
     }
 
     /// What a journal must have been made for.
     pub(super) fn fingerprint(&self) -> String {
         let structure = self.setup.model.structure();
+        let derived: Vec<&str> = self.derived.iter().map(|d| d.name.as_str()).collect();
         format!(
-            "{} {:?} {:?} M={} k={:?} near={:?} {:?} v{} {}",
+            "{} {:?} {:?} M={} k={:?} near={:?} {:?} {derived:?} v{} {}",
             structure.name,
             self.setup.parameters.values,
             self.setup.parameters.automatic,
@@ -388,6 +402,7 @@ fn row(collocations: &Collocations, place: &[f64], point: &LandauPoint) -> Resul
         c2: known.then(|| pair(point.c2)),
         c2_error: finite(error2),
         amplitude: equilibrium(c0, c2).filter(|_| known),
+        derived: Vec::new(),
         bifurcation: match known {
             true => Bifurcation::new(c0, c2).to_string(),
             false => String::new(),
@@ -403,6 +418,7 @@ fn follow<C>(
     places: &[Vec<f64>],
     growth: impl Fn(&C) -> f64,
     step: impl Fn(&[f64], Option<&C>) -> Result<(Row, C)>,
+    derived: usize,
     progress: &dyn Progress,
 ) -> Vec<Row> {
     let last = places.len() - 1;
@@ -427,7 +443,7 @@ fn follow<C>(
                 carried = Some(next);
                 row
             }
-            Err(error) => Row::failed(places[index].clone(), &error),
+            Err(error) => Row::failed(places[index].clone(), &error, derived),
         });
         progress.advance(1);
     }

@@ -24,7 +24,7 @@ pub use expansion::{CriticalMode, Distance, Expansion};
 pub use mode::Mode;
 pub use normalisation::normalise;
 pub use outputs::outputs;
-pub use pattern::{Pattern, Window, pattern};
+pub use pattern::{Pattern, PlaneField, Window, pattern};
 pub use response::{Multiplier, arithmetic};
 pub use system::{AmplitudeSystem, Term, power};
 pub use waves::{Stable, Waves};

@@ -1,13 +1,29 @@
-//! Patterns in the plane: base state, fundamental, and the expansion through third order.
+//! Patterns in the plane: base state, fundamental, and the expansion through third order, of the fields and of
+//! expressions in them.
 
 use super::cubic::LandauPoint;
 use super::expansion::Expansion;
 use super::mode::Mode;
 use crate::error::Result;
-use crate::model::C64;
-use crate::model::{FieldId, Jet, Table};
+use crate::model::{C64, Expression, FieldId, Jet, Table};
+use crate::problem::Problem;
+use crate::space::Place;
 
-/// Fields over a rectangle of the (x, y)-plane; arrays are `[field][y][x]`.
+/// One quantity over the plane; arrays are `[y][x]`.
+#[derive(Clone, Debug)]
+pub struct PlaneField {
+    /// The field, or the expression as it was written.
+    pub name: String,
+    /// In the base state, `[y]`.
+    pub base: Vec<f64>,
+    /// At X⁰ + A X[1;1] e^{ikx} + c.c., P (4.5).
+    pub linear: Vec<Vec<f64>>,
+    /// At X⁰ and all modes through third order, P (4.4).
+    pub nonlinear: Vec<Vec<f64>>,
+}
+
+/// Fields over a rectangle of the (x, y)-plane.
+#[derive(Clone, Debug)]
 pub struct Pattern {
     /// Along the periodic coordinate.
     pub x: Vec<f64>,
@@ -15,14 +31,10 @@ pub struct Pattern {
     pub y: Vec<f64>,
     /// A
     pub amplitude: f64,
-    /// Of the fields.
-    pub names: Table<FieldId, String>,
-    /// X⁰, `[field][y]`
-    pub base: Table<FieldId, Vec<f64>>,
-    /// X⁰ + A X[1;1] e^{ikx} + c.c., P (4.5)
-    pub linear: Table<FieldId, Vec<Vec<f64>>>,
-    /// X⁰ and all modes through third order, P (4.4)
-    pub nonlinear: Table<FieldId, Vec<Vec<f64>>>,
+    /// The profiles.
+    pub fields: Table<FieldId, PlaneField>,
+    /// The expressions that were asked for, in their order.
+    pub derived: Vec<PlaneField>,
 }
 
 /// The order of the expansion that is drawn.
@@ -39,11 +51,16 @@ pub struct Window {
     pub wavelengths: f64,
 }
 
-/// The pattern of a Landau point at amplitude A.
+/// The pattern of a Landau point at amplitude A, with expressions beside the fields.
 ///
 /// # Errors
 /// A resonance at third order.
-pub fn pattern(point: &LandauPoint, amplitude: f64, window: Window) -> Result<Pattern> {
+pub fn pattern(
+    point: &LandauPoint,
+    amplitude: f64,
+    window: Window,
+    expressions: &[Expression],
+) -> Result<Pattern> {
     let expansion = Expansion::to(&point.problem, vec![point.pair.clone()], ORDER)?;
     let (problem, k) = (point.problem.as_ref(), point.k());
     let (structure, space) = (problem.structure(), problem.space());
@@ -54,55 +71,95 @@ pub fn pattern(point: &LandauPoint, amplitude: f64, window: Window) -> Result<Pa
         .map(|i| length * i as f64 / (columns - 1) as f64)
         .collect();
     let states: Vec<Vec<f64>> = places.iter().map(|&at| problem.base.at(at, k)).collect();
-    let profile = |field: FieldId| -> Vec<f64> {
-        let value = |state: &Vec<f64>| structure.base_value(state, field, 0);
-        states.iter().map(value).collect()
+    let modes = expansion.known().into_iter();
+    let modes = modes.map(|(monomial, mode)| (monomial.degree(), mode));
+    let sum = Superposition {
+        problem,
+        places: &places,
+        states: &states,
+        modes: modes.collect(),
+        amplitude,
+        x: &x,
     };
-    let base: Table<FieldId, Vec<f64>> = structure.profiles().map(profile).collect();
-    let modes = expansion.known();
-    let sum = |order: usize| -> Table<FieldId, Vec<Vec<f64>>> {
-        let modes = modes
-            .iter()
-            .filter(|(monomial, _)| monomial.degree() <= order);
-        let modes: Vec<(f64, &Mode)> = modes
-            .map(|(monomial, mode)| (amplitude.powi(monomial.degree() as i32), mode))
-            .collect();
-        let field = |(field, base): (FieldId, &Vec<f64>)| {
-            let profile = |&(size, mode): &(f64, &Mode)| {
-                let profile = mode.at(problem, Jet::value(field), &places);
-                (mode.q, profile.into_iter().map(|v| v * size).collect())
-            };
-            superpose(base, &modes.iter().map(profile).collect::<Vec<_>>(), &x)
-        };
-        base.pairs().map(field).collect()
+    let field = |field: FieldId| PlaneField {
+        name: structure.fields[field].name.clone(),
+        base: sum.base(Jet::value(field)),
+        linear: sum.to(1, Jet::value(field)),
+        nonlinear: sum.to(ORDER, Jet::value(field)),
+    };
+    let derived = |expression: &Expression| {
+        let at_base = |state: &Vec<f64>| expression.at_base(structure, state);
+        PlaneField {
+            name: expression.written.clone(),
+            base: states.iter().map(at_base).collect(),
+            linear: sum.of(1, expression),
+            nonlinear: sum.of(ORDER, expression),
+        }
     };
     Ok(Pattern {
         amplitude,
-        linear: sum(1),
-        nonlinear: sum(ORDER),
-        names: structure
-            .profiles()
-            .map(|field| structure.fields[field].name.clone())
-            .collect(),
+        fields: structure.profiles().map(field).collect(),
+        derived: expressions.iter().map(derived).collect(),
         y: places.iter().map(|&place| space.y(place)).collect(),
         x,
-        base,
     })
 }
 
-/// X⁰ + Σ over modes and their conjugates.
-fn superpose(base: &[f64], modes: &[(f64, Vec<C64>)], x: &[f64]) -> Vec<Vec<f64>> {
-    let value = |j: usize, x: f64| {
-        let part = |(q, profile): &(f64, Vec<C64>)| (profile[j] * C64::cis(q * x)).re;
-        base[j] + modes.iter().map(part).sum::<f64>()
-    };
-    let row = |j| x.iter().map(|&x| value(j, x)).collect();
-    (0..base.len()).map(row).collect()
+/// X⁰ + Σ A^m X over modes and their conjugates.
+struct Superposition<'a> {
+    problem: &'a Problem,
+    places: &'a [Place],
+    states: &'a [Vec<f64>],
+    /// Each with its degree in A.
+    modes: Vec<(usize, Mode)>,
+    amplitude: f64,
+    x: &'a [f64],
+}
+
+impl Superposition<'_> {
+    /// A jet of the base state.
+    fn base(&self, jet: Jet) -> Vec<f64> {
+        let structure = self.problem.structure();
+        let value = |state: &Vec<f64>| structure.base_jet(jet, state);
+        self.states.iter().map(value).collect()
+    }
+
+    /// A jet of the sum through an order.
+    fn to(&self, order: usize, jet: Jet) -> Vec<Vec<f64>> {
+        let base = self.base(jet);
+        let modes = self.modes.iter().filter(|(degree, _)| *degree <= order);
+        let profiles: Vec<(f64, Vec<C64>)> = modes
+            .map(|(degree, mode)| {
+                let size = self.amplitude.powi(*degree as i32);
+                let profile = mode.at(self.problem, jet, self.places).into_iter();
+                (mode.q, profile.map(|v| v * size).collect())
+            })
+            .collect();
+        let value = |j: usize, x: f64| {
+            let part = |(q, profile): &(f64, Vec<C64>)| (profile[j] * C64::cis(q * x)).re;
+            base[j] + profiles.iter().map(part).sum::<f64>()
+        };
+        let row = |j| self.x.iter().map(|&x| value(j, x)).collect();
+        (0..base.len()).map(row).collect()
+    }
+
+    /// An expression at the sum through an order.
+    fn of(&self, order: usize, expression: &Expression) -> Vec<Vec<f64>> {
+        let jets = expression.jets.iter();
+        let jets: Vec<Vec<Vec<f64>>> = jets.map(|&jet| self.to(order, jet)).collect();
+        let value = |j: usize, i: usize| {
+            let jets: Vec<f64> = jets.iter().map(|values| values[j][i]).collect();
+            expression.evaluate(&self.states[j], &jets)
+        };
+        let row = |j: usize| (0..self.x.len()).map(|i| value(j, i)).collect();
+        (0..self.states.len()).map(row).collect()
+    }
 }
 
 impl Pattern {
-    /// A field by name.
-    pub fn field(&self, name: &str) -> Option<FieldId> {
-        self.names.position(|n| n == name)
+    /// A field by name, or an expression as it was written.
+    pub fn quantity(&self, name: &str) -> Option<&PlaneField> {
+        let mut all = self.fields.iter().chain(&self.derived);
+        all.find(|field| field.name == name)
     }
 }

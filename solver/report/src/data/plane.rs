@@ -45,11 +45,9 @@ pub fn modes(setup: &Setup, found: &Modes, attributes: Vec<(String, String)>) ->
     let vertical = setup.model.structure().coordinate.as_deref().unwrap_or("y");
     let mut arrays = Vec::new();
     for profile in &found.profiles {
-        // Names that other programs take for names: X13 for X[1;3].
-        let plain = |c: &char| c.is_ascii_alphanumeric();
         let name = match profile.name.as_str() {
             "X†" => "adjoint".to_owned(),
-            name => name.chars().filter(plain).collect::<String>(),
+            name => plain(name),
         };
         for (part, values) in profile.parts.iter().zip(&profile.values) {
             let sides: [(&str, Side); 2] = [("re", |v| v.re), ("im", |v| v.im)];
@@ -69,16 +67,23 @@ pub fn modes(setup: &Setup, found: &Modes, attributes: Vec<(String, String)>) ->
     }
 }
 
+/// A name that other programs take for one: X13 for X[1;3], theta1y for theta + 1 - y.
+fn plain(name: &str) -> String {
+    let kept = |c: &char| c.is_ascii_alphanumeric() || *c == '_';
+    name.chars().filter(kept).collect()
+}
+
 /// X⁰, P (4.5) and P (4.4) of every field over (y, x).
 pub fn dataset(setup: &Setup, found: &Pattern, attributes: Vec<(String, String)>) -> Dataset {
     let structure = setup.model.structure();
     let vertical = structure.coordinate.as_deref().unwrap_or("y");
     let mut arrays = Vec::new();
-    for (field, name) in found.names.pairs() {
+    for field in found.fields.iter().chain(&found.derived) {
+        let name = plain(&field.name);
         let flat = |values: &[Vec<f64>]| values.iter().flatten().copied().collect();
         for (kind, values) in [
-            ("linear", flat(&found.linear[field])),
-            ("nonlinear", flat(&found.nonlinear[field])),
+            ("linear", flat(&field.linear)),
+            ("nonlinear", flat(&field.nonlinear)),
         ] {
             arrays.push(Array {
                 name: format!("{name}_{kind}"),
@@ -89,7 +94,7 @@ pub fn dataset(setup: &Setup, found: &Pattern, attributes: Vec<(String, String)>
         arrays.push(Array {
             name: format!("{name}_base"),
             axes: vec![0],
-            values: found.base[field].clone(),
+            values: field.base.clone(),
         });
     }
     Dataset {

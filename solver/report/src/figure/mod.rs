@@ -8,7 +8,7 @@ mod plane;
 
 pub use curves::{Curve, Panel, Style, panels};
 pub use modes::{base, modes, spectrum};
-pub use pattern::{pattern_lines, pattern_pair};
+pub use pattern::{Part, pattern_lines, pattern_pair};
 pub use plane::{Plane, planes};
 
 /// Colours that remain apart for colour-blind readers (Okabe & Ito), the darkest first.

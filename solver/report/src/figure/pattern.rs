@@ -1,62 +1,94 @@
 //! A pattern: the fundamental alone beside the expansion through third order.
 
 use super::{Panel, Plane, Style, panels, planes};
-use landau_solver::model::{FieldId, Structure, Table};
-use landau_solver::weakly::Pattern;
+use landau_solver::model::Structure;
+use landau_solver::weakly::{Pattern, PlaneField};
+
+/// What of a pattern is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Base state and perturbation.
+    Total,
+    /// The perturbation alone.
+    Perturbation,
+}
+
+impl Part {
+    /// The part of a quantity over the plane.
+    fn of(self, total: &[Vec<f64>], base: &[f64]) -> Vec<Vec<f64>> {
+        let row = |(row, base): (&Vec<f64>, &f64)| match self {
+            Part::Total => row.clone(),
+            Part::Perturbation => row.iter().map(|value| value - base).collect(),
+        };
+        total.iter().zip(base).map(row).collect()
+    }
+
+    /// A quantity as a picture names it.
+    fn name(self, name: &str) -> String {
+        match self {
+            Part::Total => name.to_owned(),
+            Part::Perturbation => format!("{name} − base"),
+        }
+    }
+}
+
+/// The title of a picture: the model, and what it was drawn for.
+fn title(structure: &Structure, found: &Pattern, facts: &str) -> String {
+    let separator = if facts.is_empty() { "" } else { ", " };
+    format!(
+        "{}{separator}{facts}, A = {:.4}",
+        structure.title, found.amplitude
+    )
+}
 
 /// Linear beside nonlinear.
 pub fn pattern_pair(
     structure: &Structure,
     found: &Pattern,
-    shade: FieldId,
-    arrows: Option<[FieldId; 2]>,
+    facts: &str,
+    (shade, part): (&PlaneField, Part),
+    arrows: Option<[&PlaneField; 2]>,
 ) -> String {
     let vertical = structure.coordinate.clone().unwrap_or_default();
     let labels = [structure.periodic.clone(), vertical];
-    let panel = |title, fields| one(found, title, fields, shade, arrows, labels.clone());
-    let title = format!("{}, A = {:.4}", structure.title, found.amplitude);
+    type Chosen = fn(&PlaneField) -> &[Vec<f64>];
+    let panel = |title: &str, of: Chosen| Plane {
+        title: title.to_owned(),
+        labels: labels.clone(),
+        x: &found.x,
+        y: &found.y,
+        shade: (part.name(&shade.name), part.of(of(shade), &shade.base)),
+        arrows: arrows.map(|pair| pair.map(|field| part.of(of(field), &field.base))),
+        key: arrows.map(|[along, across]| format!("({}, {})", along.name, across.name)),
+    };
     planes(
-        &title,
+        &title(structure, found, facts),
         &[
-            panel("fundamental alone", &found.linear),
-            panel("through third order", &found.nonlinear),
+            panel("fundamental alone", |field| &field.linear),
+            panel("through third order", |field| &field.nonlinear),
         ],
     )
 }
 
 /// The same along the periodic coordinate alone, one panel a field.
-pub fn pattern_lines(structure: &Structure, found: &Pattern) -> Option<String> {
-    let panel = |(field, name): (FieldId, &String)| {
-        let mut panel = Panel::new(name, &structure.periodic, name);
-        let curve = |values: &Table<FieldId, Vec<Vec<f64>>>| {
-            let values = values[field].iter().flatten().copied();
+pub fn pattern_lines(
+    structure: &Structure,
+    found: &Pattern,
+    facts: &str,
+    part: Part,
+) -> Option<String> {
+    let panel = |field: &PlaneField| {
+        let name = part.name(&field.name);
+        let mut panel = Panel::new(&name, &structure.periodic, &name);
+        let curve = |values: &[Vec<f64>]| {
+            let values = part.of(values, &field.base).into_iter().flatten();
             found.x.iter().copied().zip(values).collect()
         };
-        panel.curve("through third order", Style::Line, curve(&found.nonlinear));
-        panel.curve("fundamental alone", Style::Dashed, curve(&found.linear));
+        panel.curve("through third order", Style::Line, curve(&field.nonlinear));
+        panel.curve("fundamental alone", Style::Dashed, curve(&field.linear));
         panel
     };
-    let drawn: Vec<Panel> = found.names.pairs().map(panel).collect();
-    panels(
-        &format!("{}, A = {:.4}", structure.title, found.amplitude),
-        &drawn,
-    )
-}
-
-fn one<'a>(
-    found: &'a Pattern,
-    title: &str,
-    fields: &'a Table<FieldId, Vec<Vec<f64>>>,
-    shade: FieldId,
-    arrows: Option<[FieldId; 2]>,
-    labels: [String; 2],
-) -> Plane<'a> {
-    Plane {
-        title: title.to_owned(),
-        labels,
-        x: &found.x,
-        y: &found.y,
-        shade: (&found.names[shade], &fields[shade]),
-        arrows: arrows.map(|pair| pair.map(|f| fields[f].as_slice())),
-    }
+    let all = found.fields.iter().chain(&found.derived);
+    let drawn: Vec<Panel> = all.map(panel).collect();
+    panels(&title(structure, found, facts), &drawn)
 }

@@ -24,9 +24,11 @@ pub struct Plane<'a> {
     /// Along y.
     pub y: &'a [f64],
     /// Name and values that are shaded.
-    pub shade: (&'a str, &'a [Vec<f64>]),
+    pub shade: (String, Vec<Vec<f64>>),
     /// Components along and across.
-    pub arrows: Option<[&'a [Vec<f64>]; 2]>,
+    pub arrows: Option<[Vec<Vec<f64>>; 2]>,
+    /// What the arrows are.
+    pub key: Option<String>,
 }
 
 /// Planes side by side.
@@ -39,6 +41,7 @@ pub fn planes(title: &str, planes: &[Plane]) -> String {
             .with_title(plane.title.clone())
             .with_x_label(plane.labels[0].clone())
             .with_y_label(plane.labels[1].clone())
+            .with_subtitle(plane.subtitle())
             .with_show_grid(false)
             .with_clamp_axis()
             .with_equal_aspect();
@@ -66,8 +69,18 @@ impl Plane<'_> {
         [length(self.x), length(self.y)]
     }
 
+    /// The key of the arrows: how long the longest stands for.
+    fn subtitle(&self) -> String {
+        let (Some(key), Some([u, v])) = (&self.key, &self.arrows) else {
+            return String::new();
+        };
+        let values = u.iter().flatten().zip(v.iter().flatten());
+        let longest = values.map(|(u, v)| u.hypot(*v)).fold(0.0, f64::max);
+        format!("arrows: {key}, the longest {longest:.3}")
+    }
+
     fn plots(&self) -> Vec<Plot> {
-        let (label, values) = self.shade;
+        let (label, values) = &self.shade;
         let (columns, rows) = (thinned(self.x), thinned(self.y));
         let pick = |from: &[f64], places: &[usize]| places.iter().map(|&i| from[i]).collect();
         let grid = rows.iter().map(|&j| pick(&values[j], &columns)).collect();
@@ -77,16 +90,16 @@ impl Plane<'_> {
             .with_filled()
             .with_colormap(ColorMap::Viridis)
             .with_line_width(0.35)
-            .with_legend(label);
+            .with_legend(label.clone());
         let mut plots: Vec<Plot> = vec![shading.into()];
-        if let Some(vector) = self.arrows {
+        if let Some(vector) = &self.arrows {
             plots.push(self.quiver(vector).into());
         }
         plots
     }
 
     /// Arrows on a square lattice, none longer than its spacing.
-    fn quiver(&self, [u, v]: [&[Vec<f64>]; 2]) -> QuiverPlot {
+    fn quiver(&self, [u, v]: &[Vec<Vec<f64>>; 2]) -> QuiverPlot {
         let [width, height] = self.extent();
         let spacing = width.max(height) / ARROWS;
         let lattice = |values: &[f64], length: f64| -> Vec<usize> {

@@ -150,6 +150,36 @@ pub fn named(case: &Case, quantity: &str) -> String {
     }
 }
 
+/// What a sweep draws.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(untagged)]
+pub enum Drawn {
+    /// A quantity of every Landau point.
+    Point(Column),
+    /// An output of the model, or an expression with its place.
+    Derived(String),
+}
+
+impl Drawn {
+    /// The text of a derived column.
+    pub fn derived(&self) -> Option<String> {
+        match self {
+            Drawn::Point(_) => None,
+            Drawn::Derived(text) => Some(text.clone()),
+        }
+    }
+}
+
+/// A fit of exp(−y/h) to a part of a profile.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Tail {
+    /// Fractions of the interval.
+    pub between: [f64; 2],
+    /// What h ought to be, by an expression at the upper end.
+    pub predicted: Option<String>,
+}
+
 /// What sort of critical point.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
@@ -181,16 +211,14 @@ fn growth() -> Of {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Task {
-    /// Fields of the base state over the cross-stream coordinate.
+    /// Fields of the base state, or expressions in it, over the cross-stream coordinate.
     Profiles {
         case: Vec<Case>,
         fields: Vec<String>,
         #[serde(default)]
         logarithmic: bool,
-        /// Fit exp(−y/h) to the first field between these fractions of the interval.
-        tail: Option<[f64; 2]>,
-        /// h by the model: this field at the upper end times this parameter.
-        scale_height: Option<[String; 2]>,
+        /// Of the first field.
+        tail: Option<Tail>,
     },
     /// Leading eigenvalue of L and of L† over k, at several resolutions.
     Spectrum {
@@ -202,7 +230,7 @@ pub enum Task {
     Sweep {
         case: Vec<Case>,
         over: Axis,
-        columns: Vec<Column>,
+        columns: Vec<Drawn>,
     },
     /// a0(k) beside a0(2k)/2: they meet at the 2:1 resonance.
     Resonance { case: Vec<Case>, over: Axis },

@@ -2,11 +2,12 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Asked, Axis, Case, named};
+use super::super::study::{Asked, Axis, Case, Drawn, named};
 use super::draw::picture;
 use super::each;
 use super::points::question;
 use crate::figure::{Panel, Style};
+use crate::library::column as column_of;
 use landau_solver::error::{Error, Result};
 use landau_solver::study::critical;
 use landau_solver::study::row::{Column, NUMBERS, Row, column};
@@ -14,7 +15,13 @@ use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::{self, Setup, Silent};
 
 /// Landau points of one case over an axis.
-fn rows(setup: &Setup, k: Option<f64>, name: &str, values: Vec<f64>) -> Result<Vec<Row>> {
+fn rows(
+    setup: &Setup,
+    k: Option<f64>,
+    name: &str,
+    values: Vec<f64>,
+    columns: &[String],
+) -> Result<Vec<Row>> {
     let axis = study::Axis::named(setup.model.as_ref(), name)?;
     let range = Range {
         name: name.to_owned(),
@@ -26,6 +33,10 @@ fn rows(setup: &Setup, k: Option<f64>, name: &str, values: Vec<f64>) -> Result<V
         ranges: vec![range],
         near: None,
         k,
+        derived: columns
+            .iter()
+            .map(|text| column_of(setup.model.as_ref(), text))
+            .collect::<Result<_>>()?,
     };
     Ok(sweep.run(&Silent))
 }
@@ -34,39 +45,59 @@ pub(super) fn sweep(
     shop: &Workshop,
     cases: &[Case],
     over: &Axis,
-    columns: &[Column],
+    columns: &[Drawn],
 ) -> Result<Outcome> {
+    let derived: Vec<String> = columns.iter().filter_map(Drawn::derived).collect();
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
-        rows(&shop.setup(case)?, case.k, &over.name, over.values())
+        let setup = shop.setup(case)?;
+        rows(&setup, case.k, &over.name, over.values(), &derived)
     })?;
-    let names = |column: &Column| match column {
-        Column::A0 => ("growth rate", "a0"),
-        Column::A2 => ("first Landau coefficient", "a2"),
-        Column::Amplitude => ("equilibrium amplitude", "A_e"),
-        Column::Threshold => ("threshold amplitude", "A_e"),
+    let names = |column: &Drawn| -> (String, String) {
+        let known = |title: &str, y: &str| (title.to_owned(), y.to_owned());
+        match column {
+            Drawn::Point(Column::A0) => known("growth rate", "a0"),
+            Drawn::Point(Column::A2) => known("first Landau coefficient", "a2"),
+            Drawn::Point(Column::Amplitude) => known("equilibrium amplitude", "A_e"),
+            Drawn::Point(Column::Threshold) => known("threshold amplitude", "A_e"),
+            Drawn::Derived(text) => known(text, text),
+        }
     };
     let mut drawn: Vec<Panel> = columns
         .iter()
-        .map(|column| Panel::new(names(column).0, &over.name, names(column).1))
+        .map(|column| {
+            let (title, y) = names(column);
+            Panel::new(&title, &over.name, &y)
+        })
         .collect();
     // The names of a sweep's own table.
-    let header: Vec<&str> = ["case", &over.name].into_iter().chain(NUMBERS).collect();
+    let header = ["case", &over.name].into_iter().chain(NUMBERS);
+    let header: Vec<&str> = header.chain(derived.iter().map(String::as_str)).collect();
     let mut table = Table::new(&header).with_words(&["label", "bifurcation", "status"]);
     let mut unconverged = 0;
     for (index, rows) in &found {
         let label = &cases[*index].label;
         for (panel, quantity) in drawn.iter_mut().zip(columns) {
-            let points = column(rows, *quantity);
             match quantity {
-                Column::A0 => panel.curve(label, Style::Line, points),
-                Column::A2 | Column::Amplitude | Column::Threshold => {
-                    panel.curve_with_poles(label, Style::Line, points);
+                Drawn::Point(Column::A0) => {
+                    panel.curve(label, Style::Line, column(rows, Column::A0));
+                }
+                Drawn::Point(quantity) => {
+                    panel.curve_with_poles(label, Style::Line, column(rows, *quantity));
+                }
+                Drawn::Derived(text) => {
+                    let index = derived.iter().position(|d| d == text);
+                    let value = |row: &Row| index.and_then(|i| row.derived[i]);
+                    let points = rows
+                        .iter()
+                        .map(|row| (row.coordinates[0], value(row).unwrap_or(f64::NAN)));
+                    panel.curve(label, Style::Line, points.collect());
                 }
             }
         }
         for row in rows {
-            let own = row.numbers().map(|x| x.unwrap_or(f64::NAN));
+            let own = row.numbers().into_iter().chain(row.derived.iter().copied());
+            let own = own.map(|x| x.unwrap_or(f64::NAN));
             let numbers = [(*index + 1) as f64, row.coordinates[0]]
                 .into_iter()
                 .chain(own);
@@ -89,8 +120,8 @@ pub(super) fn resonance(shop: &Workshop, cases: &[Case], over: &Axis) -> Result<
     let found = each(cases, &mut outcome.failures, |case| {
         let (setup, values) = (shop.setup(case)?, over.values());
         let doubled = values.iter().map(|k| 2.0 * k).collect();
-        let one = rows(&setup, None, "k", values)?;
-        Ok((one, rows(&setup, None, "k", doubled)?))
+        let one = rows(&setup, None, "k", values, &[])?;
+        Ok((one, rows(&setup, None, "k", doubled, &[])?))
     })?;
     let mut panel = Panel::new("2:1 resonance", "k", "growth rate");
     let mut table = Table::new(&["case", "k", "a0(k)", "a0(2k)/2"]).with_words(&["label"]);
@@ -132,7 +163,7 @@ pub(super) fn power_law(
             .map(|i| distances[0].signum() * near * (far / near).powf(i as f64 / steps))
             .collect();
         let values = relative.iter().map(|d| place * (1.0 + d)).collect();
-        let rows = rows(&setup, case.k, &asked.vary, values)?;
+        let rows = rows(&setup, case.k, &asked.vary, values, &[])?;
         let points: Vec<(f64, f64)> = relative
             .iter()
             .zip(&rows)

@@ -28,15 +28,7 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             fields,
             logarithmic,
             tail,
-            scale_height,
-        } => profiles::profiles(
-            shop,
-            figure,
-            case,
-            fields,
-            *logarithmic,
-            tail.zip(scale_height.as_ref()),
-        ),
+        } => profiles::profiles(shop, figure, case, fields, *logarithmic, tail.as_ref()),
         Task::Spectrum {
             case,
             over,

@@ -6,11 +6,12 @@ use super::super::study::{Axis, Case, named};
 use super::draw::picture;
 use super::each;
 use crate::data::plane::{attributes, dataset};
-use crate::figure::{Panel, Style, pattern_pair};
+use crate::figure::{Panel, Part, Style, pattern_pair};
+use crate::library::expression;
 use landau_solver::error::{Error, Result};
-use landau_solver::model::FieldId;
+use landau_solver::model::Expression;
 use landau_solver::study::{self, Setup};
-use landau_solver::weakly::{Pattern, Selection, Window, pattern as expand};
+use landau_solver::weakly::{Pattern, PlaneField, Selection, Window, pattern as expand};
 use nalgebra::{Matrix2, Vector2};
 
 /// Points along x and y of pictures, and of the field that a vortex is measured in.
@@ -18,7 +19,13 @@ const DRAWN: [usize; 2] = [161, 81];
 const MEASURED: [usize; 2] = [401, 401];
 
 /// The pattern at the equilibrium amplitude.
-fn at_equilibrium(setup: &Setup, k: f64, points: [usize; 2], wavelengths: f64) -> Result<Pattern> {
+fn at_equilibrium(
+    setup: &Setup,
+    k: f64,
+    points: [usize; 2],
+    wavelengths: f64,
+    expressions: &[Expression],
+) -> Result<Pattern> {
     let base = setup.base(None)?;
     let point = setup.point(&base, k, Selection::Leading)?;
     let missing = || Error::computation("there is no equilibrium amplitude at cubic order");
@@ -29,12 +36,28 @@ fn at_equilibrium(setup: &Setup, k: f64, points: [usize; 2], wavelengths: f64) -
         rows,
         wavelengths,
     };
-    expand(&point, amplitude, window)
+    expand(&point, amplitude, window, expressions)
 }
 
-fn field(found: &Pattern, name: &str) -> Result<FieldId> {
-    let missing = || Error::input(format!("the model has no profile `{name}`"));
-    found.field(name).ok_or_else(missing)
+fn quantity<'p>(found: &'p Pattern, name: &str) -> Result<&'p PlaneField> {
+    let names = || {
+        let names = found.fields.iter().map(|field| field.name.as_str());
+        names.collect::<Vec<_>>().join(", ")
+    };
+    let missing = || {
+        Error::input(format!(
+            "the model has no profile `{name}`: it has {}",
+            names()
+        ))
+    };
+    found.quantity(name).ok_or_else(missing)
+}
+
+/// The parameters that a case sets, and its wavenumber.
+fn facts(case: &Case, k: f64) -> String {
+    let set = case.set.iter().map(|set| set.replace('=', " = "));
+    let all: Vec<String> = set.chain([format!("k = {k}")]).collect();
+    all.join(", ")
 }
 
 /// What a picture of a pattern is to show, and where it belongs.
@@ -53,13 +76,21 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
         let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
         let k = case.k.ok_or_else(missing)?;
         let setup = shop.setup(case)?;
-        let found = at_equilibrium(&setup, k, DRAWN, wanted.wavelengths)?;
-        let shade = field(&found, wanted.shade)?;
+        let structure = setup.model.structure();
+        // A field by name, or any expression of the spec language.
+        let is_field = structure.field(wanted.shade).is_some();
+        let expressions = match is_field {
+            true => Vec::new(),
+            false => vec![expression(setup.model.as_ref(), wanted.shade)?],
+        };
+        let found = at_equilibrium(&setup, k, DRAWN, wanted.wavelengths, &expressions)?;
+        let shade = quantity(&found, wanted.shade)?;
         let arrows = wanted
             .arrows
-            .map(|[u, v]| Ok::<_, Error>([field(&found, u)?, field(&found, v)?]))
+            .map(|[u, v]| Ok::<_, Error>([quantity(&found, u)?, quantity(&found, v)?]))
             .transpose()?;
-        let svg = pattern_pair(setup.model.structure(), &found, shade, arrows);
+        let facts = facts(case, k);
+        let svg = pattern_pair(structure, &found, &facts, (shade, Part::Total), arrows);
         let parameters = &setup.base(None)?.parameters;
         let facts = attributes(&setup, parameters, k, Some(found.amplitude));
         let data = dataset(&setup, &found, facts);
@@ -117,10 +148,10 @@ pub(super) fn circulation(
         .collect();
     let found = each(&moved, &mut outcome.failures, |case| {
         study::check_wavenumber(k)?;
-        let found = at_equilibrium(&shop.setup(case)?, k, MEASURED, 1.0)?;
-        let [u, v] = [field(&found, &arrows[0])?, field(&found, &arrows[1])?];
+        let found = at_equilibrium(&shop.setup(case)?, k, MEASURED, 1.0, &[])?;
+        let [u, v] = [quantity(&found, &arrows[0])?, quantity(&found, &arrows[1])?];
         let length = side * 2.0 * std::f64::consts::PI / k;
-        vortex(&found, [u, v], field(&found, shade)?, length)
+        vortex(&found, [u, v], quantity(&found, shade)?, length)
     })?;
     let values = over.values();
     for (number, case) in cases.iter().enumerate() {
@@ -162,9 +193,14 @@ pub(super) fn circulation(
 }
 
 /// Circulation over a square around the strongest vortex of half a wavelength.
-fn vortex(found: &Pattern, [u, v]: [FieldId; 2], shade: FieldId, side: f64) -> Result<Vortex> {
+fn vortex(
+    found: &Pattern,
+    [u, v]: [&PlaneField; 2],
+    shade: &PlaneField,
+    side: f64,
+) -> Result<Vortex> {
     let (x, y) = (&found.x, &found.y);
-    let (u, v) = (&found.nonlinear[u], &found.nonlinear[v]);
+    let (u, v) = (&u.nonlinear, &v.nonlinear);
     let corners =
         |f: &[Vec<f64>], i: usize, j: usize| [f[j][i], f[j][i + 1], f[j + 1][i], f[j + 1][i + 1]];
     let changes =
@@ -204,7 +240,7 @@ fn vortex(found: &Pattern, [u, v]: [FieldId; 2], shade: FieldId, side: f64) -> R
         + integral(low, high, &|t| sample(v, right, t))
         - integral(left, right, &|t| sample(u, t, high))
         - integral(low, high, &|t| sample(v, left, t));
-    let rows = found.nonlinear[shade].iter();
+    let rows = shade.nonlinear.iter();
     let largest: Vec<f64> = rows
         .map(|row| row.iter().copied().fold(f64::NEG_INFINITY, f64::max))
         .collect();

@@ -2,13 +2,14 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Axis, Case, named};
+use super::super::study::{Axis, Case, Tail, named};
 use super::draw::picture;
 use super::each;
 use crate::figure::{Panel, Style};
+use crate::library::expression;
+use landau_solver::base::BaseState;
 use landau_solver::error::{Error, Result};
-use landau_solver::model::{C64, End, FieldId};
-use landau_solver::parameters::Parameters;
+use landau_solver::model::{C64, End, Expression};
 use landau_solver::problem::Problem;
 use landau_solver::spectrum;
 use landau_solver::study::Setup;
@@ -17,34 +18,28 @@ use landau_solver::study::quadrature::adjoint_mode;
 /// Points of a profile.
 const POINTS: usize = 401;
 
-/// What a profile is fitted with: a stretch of the interval, a field and a parameter for the model's
-/// own scale height.
-type Tail<'a> = ([f64; 2], &'a [String; 2]);
-
-fn field(setup: &Setup, name: &str) -> Result<FieldId> {
-    let found = setup.model.structure().field(name);
-    found.ok_or_else(|| Error::input(format!("the model has no field `{name}`")))
-}
-
 pub(super) fn profiles(
     shop: &Workshop,
     figure: &str,
     cases: &[Case],
     fields: &[String],
     logarithmic: bool,
-    tail: Option<Tail>,
+    tail: Option<&Tail>,
 ) -> Result<Outcome> {
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
-        let structure = setup.model.structure();
+        let model = setup.model.as_ref();
         let base = setup.base(None)?;
+        // A field is an expression too.
+        let wanted = fields.iter().map(|text| expression(model, text));
+        let wanted: Vec<Expression> = wanted.collect::<Result<_>>()?;
         let mut columns = vec![Vec::new(); fields.len() + 1];
         for place in base.space.evenly(POINTS) {
             let point = base.at(place, 0.0);
             columns[0].push(base.space.y(place));
-            for (column, name) in columns[1..].iter_mut().zip(fields) {
-                column.push(structure.base_value(&point, field(&setup, name)?, 0));
+            for (column, expression) in columns[1..].iter_mut().zip(&wanted) {
+                column.push(expression.at_base(model.structure(), &point));
             }
         }
         let heights = tail.map(|tail| scale_heights(&setup, &base, &columns, tail));
@@ -74,12 +69,12 @@ pub(super) fn profiles(
             row.extend(columns.iter().map(|column| column[i]));
             table.push(row, &[&cases[index].label]);
         }
-        if let Some([fitted, predicted]) = heights {
+        if let Some((fitted, predicted)) = heights {
             let quantity = "scale height of the tail, fitted";
             let label = named(&cases[index], quantity);
             let number = Number::new(figure, &cases[index], quantity, label);
             outcome.numbers.push(Number {
-                note: format!("the exponential tail predicts {predicted:.4}"),
+                note: predicted.map_or(String::new(), |h| format!("predicted: {h:.4}")),
                 ..number.answered(fitted, None)
             });
         }
@@ -88,23 +83,25 @@ pub(super) fn profiles(
     Ok(outcome)
 }
 
-/// h of exp(−y/h), fitted and from the temperature and the parameter that balance gravity.
+/// h of exp(−y/h), fitted, and what it ought to be.
 fn scale_heights(
     setup: &Setup,
-    base: &landau_solver::base::BaseState,
+    base: &BaseState,
     columns: &[Vec<f64>],
-    (stretch, [of, parameter]): Tail,
-) -> Result<[f64; 2]> {
+    tail: &Tail,
+) -> Result<(f64, Option<f64>)> {
     let place = |fraction: f64| ((POINTS - 1) as f64 * fraction).round() as usize;
-    let [a, b] = stretch.map(|fraction| place(fraction.clamp(0.0, 1.0)));
+    let [a, b] = tail.between.map(|fraction| place(fraction.clamp(0.0, 1.0)));
     let fall = (columns[1][a] / columns[1][b]).ln();
-    let structure = setup.model.structure();
-    let value = base.value(field(setup, of)?, base.space.end(End::Upper));
-    let parameter = Parameters::named(structure, parameter)?;
-    Ok([
+    let predicted = tail.predicted.as_ref().map(|text| {
+        let expression = expression(setup.model.as_ref(), text)?;
+        let top = base.at_end(End::Upper);
+        Ok::<f64, Error>(expression.at_base(base.structure(), &top))
+    });
+    Ok((
         (columns[0][b] - columns[0][a]) / fall,
-        value * base.parameters.values[parameter],
-    ])
+        predicted.transpose()?,
+    ))
 }
 
 pub(super) fn spectrum(
