@@ -8,7 +8,8 @@
 //! | resolve | [`model`] | syntax tree | [`model::Model`], on one [`graph::Graph`] |
 //! | derive | [`mod@derive`] | checked model | [`derive::Derivation`]: L, L†, N2, N3, conditions |
 //! | lower | [`kernel`] | operators | [`kernel::ModelKernels`]: straight-line programs |
-//! | emit | [`emit`] | kernels, operators | Rust source, readable text |
+//! | write | [`mod@formula`] | expressions | [`formula::Formula`]: trees, terms gathered as papers do |
+//! | emit | [`emit`] | kernels, operators, formulas | Rust source, text, LaTeX |
 //! | compare | [`errata`] | operators, a printed formula | [`errata::Comparison`], term by term |
 //!
 //! [`generate`] is the whole of it on a screen; [`build`] wraps it for a build script.
@@ -21,6 +22,7 @@ pub mod diagnostic;
 pub mod emit;
 pub mod errata;
 pub mod expression;
+pub mod formula;
 pub mod graph;
 pub mod kernel;
 pub mod model;

@@ -8,7 +8,8 @@ use super::wall::{
 };
 use super::{Deriver, regular};
 use crate::diagnostic::{Diagnostic, Location};
-use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Node, Plain};
+use crate::formula::{Arrangement, Mark, plain};
+use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Node};
 use crate::model::{Closure, Condition, End};
 
 /// A condition on the adjoint fields: Σ symbol · jets = 0.
@@ -425,19 +426,18 @@ fn describe_demand(
     jet: Jet,
     combination: &Combination<BalanceId>,
 ) -> String {
-    let lettering = deriver.model.lettering();
-    let printer = lettering.printer(deriver.graph, &Plain);
+    let letters = deriver.model.letters(Arrangement::Flat);
     let interval = deriver.model.interval.as_ref();
     let place = interval.map_or("", |i| i.written(end));
     let mut asked: Vec<String> = combination
         .keys()
-        .map(|y| format!("{}†", lettering.fields[problem.pairing[y.of]]))
+        .map(|y| format!("{}†", letters.fields[problem.pairing[y.of]]))
         .collect();
     asked.dedup();
     format!(
         " at {} = {place}: {} is free and asks for a condition on {},",
         deriver.model.coordinate(),
-        printer.jet(jet, "'"),
+        plain(&letters.jet(jet, Mark::Prime)),
         asked.join(", ")
     )
 }

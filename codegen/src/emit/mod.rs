@@ -1,7 +1,6 @@
 //! Kernels and operators → Rust and readable text.
 
 pub mod difference;
-mod grouped;
 pub mod literal;
 pub mod rust;
 pub mod text;

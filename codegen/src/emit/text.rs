@@ -1,8 +1,9 @@
 //! The derived operators as lines in the notation of the literature, as text or as LaTeX.
 
 use crate::derive::{AdjointCondition, CaseClosure, Derivation, Form, Term};
-use crate::graph::{BalanceId, FieldId, Id, Jet, Latex, Notation, Plain, Printer, Table};
-use crate::model::{End, Lettering};
+use crate::formula::{self, Arrangement, Coefficient, Formula, Letters, Mark, latex_words, plain};
+use crate::graph::{BalanceId, FieldId, Id, Jet, Table};
+use crate::model::End;
 use landau_contract::Id as Position;
 use std::collections::BTreeMap;
 
@@ -31,9 +32,9 @@ enum Label {
     None,
     Name(String),
     /// A place, which is a formula itself.
-    Place(String),
+    Place(Formula),
     /// Row and column of a matrix.
-    Entry(String, String),
+    Entry(String, Formula),
 }
 
 enum Line {
@@ -41,21 +42,24 @@ enum Line {
     /// The choices of the switches that the following lines hold for.
     Case(String),
     Words(String),
-    Formula(Label, String),
+    Formula(Label, Formula),
 }
 
 /// One section as text.
 pub fn print(derivation: &Derivation, section: Section) -> String {
-    let lines = lines(&Writer::new(derivation, &Plain), section);
+    let lines = lines(&Writer::new(derivation, Arrangement::Flat), section);
     let text = lines.into_iter().map(|line| match line {
         Line::Heading(words) => format!("{words}\n"),
         Line::Case(words) => format!("  -- {words}\n"),
         Line::Words(words) => format!("  {words}\n"),
-        Line::Formula(Label::None, formula) => format!("  {formula}\n"),
-        Line::Formula(Label::Name(name), formula) => format!("  {name}: {formula}\n"),
-        Line::Formula(Label::Place(place), formula) => format!("  at {place}: {formula}\n"),
-        Line::Formula(Label::Entry(row, column), formula) => {
-            format!("  [{row}, {column}] {formula}\n")
+        Line::Formula(label, formula) => {
+            let label = match label {
+                Label::None => String::new(),
+                Label::Name(name) => format!("{name}: "),
+                Label::Place(place) => format!("at {}: ", plain(&place)),
+                Label::Entry(row, column) => format!("[{row}, {}] ", plain(&column)),
+            };
+            format!("  {label}{}\n", plain(&formula))
         }
     });
     text.collect()
@@ -71,24 +75,26 @@ pub enum Typeset {
     Formula(String),
 }
 
-/// Words as LaTeX sets them inside a formula.
-pub fn latex_words(text: &str) -> String {
-    format!("\\text{{{}}}", text.replace('_', " "))
-}
-
 /// One section as LaTeX.
 pub fn latex(derivation: &Derivation, section: Section) -> Vec<Typeset> {
-    let words = latex_words;
-    let lines = lines(&Writer::new(derivation, &Latex), section);
+    let (words, latex) = (latex_words, formula::latex);
+    let lines = lines(&Writer::new(derivation, Arrangement::Grouped), section);
     let rows = lines.into_iter().map(|line| match line {
         Line::Heading(text) => Typeset::Heading(text),
         Line::Case(text) | Line::Words(text) => Typeset::Words(text),
         Line::Formula(label, formula) => Typeset::Formula(match label {
-            Label::None => formula,
-            Label::Name(name) => format!("{}\\quad {formula}", words(&name)),
-            Label::Place(place) => format!("{place}{}\\quad {formula}", words(":")),
+            Label::None => latex(&formula),
+            Label::Name(name) => format!("{}\\quad {}", words(&name), latex(&formula)),
+            Label::Place(place) => {
+                format!("{}{}\\quad {}", latex(&place), words(":"), latex(&formula))
+            }
             Label::Entry(row, column) => {
-                format!("[{},\\,{column}]\\quad {formula}", words(&row))
+                format!(
+                    "[{},\\,{}]\\quad {}",
+                    words(&row),
+                    latex(&column),
+                    latex(&formula)
+                )
             }
         }),
     });
@@ -106,82 +112,59 @@ fn lines(writer: &Writer, section: Section) -> Vec<Line> {
 
 /// One row of N of some degree as a sum, for doc comments.
 pub fn nonlinear_row(derivation: &Derivation, degree: usize, row: BalanceId) -> String {
-    Writer::new(derivation, &Plain).form(&derivation.operators.nonlinear[degree - 2][row])
+    let form = &derivation.operators.nonlinear[degree - 2][row];
+    plain(&Writer::new(derivation, Arrangement::Flat).form(form))
 }
 
 pub(super) struct Writer<'a> {
-    pub(super) derivation: &'a Derivation,
-    pub(super) notation: &'a dyn Notation,
-    lettering: Lettering,
+    derivation: &'a Derivation,
+    letters: Letters,
     /// Adjoint fields by balance.
     adjoint_fields: Table<BalanceId, String>,
 }
 
 impl<'a> Writer<'a> {
-    pub(super) fn new(derivation: &'a Derivation, notation: &'a dyn Notation) -> Self {
-        let lettering = derivation.model.lettering();
+    pub(super) fn new(derivation: &'a Derivation, arrangement: Arrangement) -> Self {
+        let letters = derivation.model.letters(arrangement);
         let pairing = &derivation.operators.pairing;
-        let adjoint_fields = pairing.map(|&field| format!("{}†", lettering.fields[field]));
+        let adjoint_fields = pairing.map(|&field| format!("{}†", letters.fields[field]));
         Writer {
             derivation,
-            notation,
-            lettering,
+            letters,
             adjoint_fields,
         }
     }
 
-    pub(super) fn fields(&self) -> &Table<FieldId, String> {
-        &self.lettering.fields
+    fn fields(&self) -> &Table<FieldId, String> {
+        &self.letters.fields
     }
 
-    pub(super) fn printer(&self) -> Printer<'_> {
-        let graph = &self.derivation.model.graph;
-        self.lettering.printer(graph, self.notation)
+    fn formula(&self, id: Id) -> Formula {
+        self.letters.formula(&self.derivation.model.graph, id)
     }
 
-    fn print(&self, id: Id) -> String {
-        self.printer().print(id)
+    /// coefficient · Π what
+    fn scaled(&self, coefficient: Id, what: Vec<Formula>) -> Formula {
+        self.letters
+            .scaled(&self.derivation.model.graph, coefficient, what)
     }
 
-    fn place(&self, end: End) -> String {
+    /// y = H, by the end's own name where it has one.
+    fn place(&self, end: End) -> Formula {
         let model = &self.derivation.model;
-        model.interval.as_ref().map_or(String::new(), |interval| {
-            let name = self.notation.letter(&interval.name);
-            let place = match (interval.named(end), self.notation.is_flat()) {
-                (true, true) => interval.written(end).to_owned(),
-                (true, false) => self.notation.letter(interval.written(end)),
-                (false, _) => self.print(interval.end(end)),
-            };
-            format!("{name} = {place}")
-        })
-    }
-
-    /// ∂x^a |∂x|^b ∂y^c ∂t^d
-    fn operator<V>(&self, jet: Jet<V>) -> String {
-        let model = &self.derivation.model;
-        let notation = self.notation;
-        let mut parts = Vec::new();
-        for (coordinate, power) in [("t", jet.t), (model.periodic.as_str(), jet.x)] {
-            if power > 0 {
-                parts.push(notation.partial(coordinate, power));
-            }
-        }
-        if jet.absx > 0 {
-            parts.push(notation.absolute_partial(&model.periodic, jet.absx));
-        }
-        if jet.y > 0 {
-            parts.push(notation.partial(model.coordinate(), jet.y));
-        }
-        parts.join(" ")
-    }
-
-    fn name(&self, name: &str) -> String {
-        self.notation.symbol(name, "", &[])
+        let Some(interval) = &model.interval else {
+            return Formula::zero();
+        };
+        let place = match interval.named(end) {
+            true => Formula::Letter(interval.written(end).to_owned()),
+            false => self.formula(interval.end(end)),
+        };
+        Formula::equation(Formula::Letter(interval.name.clone()), place)
     }
 
     /// formula = 0
-    fn vanishes(&self, label: Label, formula: &str) -> Line {
-        Line::Formula(label, format!("{formula} = 0"))
+    fn vanishes(&self, label: Label, formula: Formula) -> Line {
+        Line::Formula(label, Formula::equation(formula, Formula::zero()))
     }
 
     /// Entry by entry: the coefficient, then the operator.
@@ -193,28 +176,28 @@ impl<'a> Writer<'a> {
         columns: &Table<Column, String>,
         time: bool,
     ) {
-        let mut blocks: BTreeMap<(Row, Column), Vec<(Id, String)>> = BTreeMap::new();
+        let mut blocks: BTreeMap<(Row, Column), Vec<Coefficient>> = BTreeMap::new();
         let mut sorted: Vec<&Term<Row, Column>> =
             terms.iter().filter(|t| (t.jet.t > 0) == time).collect();
         sorted.sort_by_key(|t| (t.jet.y, t.jet.x, t.jet.absx));
         for term in sorted {
-            let operator = self.operator(Jet { t: 0, ..term.jet });
+            let operator = self.letters.operator(term.jet);
             let block = blocks.entry((term.row, term.jet.of)).or_default();
             block.push((term.coefficient, operator));
         }
         for ((row, column), parts) in blocks {
-            let column = self.name(&columns[column]);
+            let column = symbol(&columns[column], Mark::None);
             let label = Label::Entry(rows[row].clone(), column);
-            let formula = if self.notation.is_flat() {
-                let parts = parts
-                    .iter()
-                    .map(|(coefficient, operator)| match operator.as_str() {
-                        "" => self.print(*coefficient),
-                        operator => self.scaled(*coefficient, operator),
-                    });
-                signed_sum(parts.collect())
-            } else {
-                self.over_common_denominator(&parts)
+            let formula = match self.letters.arrangement {
+                Arrangement::Flat => Formula::sum(
+                    parts
+                        .into_iter()
+                        .map(|(id, operator)| self.scaled(id, operator)),
+                ),
+                Arrangement::Grouped => {
+                    let graph = &self.derivation.model.graph;
+                    formula::over_common_denominator(graph, &self.letters, &parts)
+                }
             };
             lines.push(Line::Formula(label, formula));
         }
@@ -225,27 +208,25 @@ impl<'a> Writer<'a> {
         let mut lines = vec![Line::Heading("Base state".into())];
         for (field, closed) in model.base.closed.pairs() {
             if let Some(id) = closed {
-                let name = self.notation.symbol(&self.fields()[field], "⁰", &[]);
-                let formula = format!("{name} = {}", self.print(*id));
+                let name = symbol(&self.fields()[field], Mark::Base);
+                let formula = Formula::equation(name, self.formula(*id));
                 lines.push(Line::Formula(Label::None, formula));
             }
         }
         for row in &operators.base {
             let name = Label::Name(model.balances[row.balance].name.clone());
-            lines.push(self.vanishes(name, &self.print(row.residual)));
+            lines.push(self.vanishes(name, self.formula(row.residual)));
         }
         for (integrand, value) in &operators.base_integrals {
-            let integral = self
-                .notation
-                .integral(&self.print(*integrand), model.coordinate());
-            let formula = format!("{integral} = {}", self.print(*value));
+            let integral = integral(self.formula(*integrand), model.coordinate());
+            let formula = Formula::equation(integral, self.formula(*value));
             lines.push(Line::Formula(Label::None, formula));
         }
         for case in &operators.cases {
             lines.extend(self.case(&case.choices));
             for condition in &case.base_conditions {
                 let place = Label::Place(self.place(condition.end));
-                lines.push(self.vanishes(place, &self.print(condition.residual)));
+                lines.push(self.vanishes(place, self.formula(condition.residual)));
             }
         }
         lines
@@ -277,7 +258,7 @@ impl<'a> Writer<'a> {
             lines.extend(self.case(&case.choices));
             for condition in &case.conditions {
                 let place = Label::Place(self.place(condition.end));
-                lines.push(self.vanishes(place, &self.form(&condition.form)));
+                lines.push(self.vanishes(place, self.form(&condition.form)));
             }
         }
         lines.push(Line::Heading("Closure at k = 0".into()));
@@ -291,24 +272,23 @@ impl<'a> Writer<'a> {
 
     fn closure(&self, closure: &CaseClosure) -> Line {
         let integral = |density: &[(Jet, Id)]| {
-            let terms: Vec<String> = density
+            let terms = density
                 .iter()
-                .map(|(jet, weight)| self.scaled(*weight, &self.jet(*jet)))
-                .collect();
+                .map(|(jet, weight)| self.scaled(*weight, vec![self.jet(*jet)]));
             let model = &self.derivation.model;
             let variable = match model.interval {
                 Some(_) => model.coordinate(),
                 None => &model.periodic,
             };
-            self.notation.integral(&terms.join(" + "), variable)
+            integral(Formula::sum(terms), variable)
         };
         match closure {
             CaseClosure::Conserved { density, .. } => {
-                self.vanishes(Label::Name("conserved".into()), &integral(density))
+                self.vanishes(Label::Name("conserved".into()), integral(density))
             }
             CaseClosure::Claimed { density, .. } => self.vanishes(
                 Label::Name("conserved, as claimed".into()),
-                &integral(density),
+                integral(density),
             ),
             CaseClosure::Gauge { field, .. } => {
                 Line::Words(format!("gauge: the constant of {}", self.fields()[*field]))
@@ -319,7 +299,7 @@ impl<'a> Writer<'a> {
             )),
             CaseClosure::Unknown { field, density } => {
                 let name = Label::Name(format!("unknown {}", self.fields()[*field]));
-                self.vanishes(name, &integral(density))
+                self.vanishes(name, integral(density))
             }
         }
     }
@@ -366,7 +346,7 @@ impl<'a> Writer<'a> {
                 Ok(conditions) => {
                     for condition in conditions {
                         let place = Label::Place(self.place(condition.end));
-                        lines.push(self.vanishes(place, &self.adjoint_condition(condition)));
+                        lines.push(self.vanishes(place, self.adjoint_condition(condition)));
                     }
                 }
             }
@@ -374,18 +354,19 @@ impl<'a> Writer<'a> {
         lines
     }
 
-    fn adjoint_condition(&self, condition: &AdjointCondition) -> String {
-        let printer = self.printer();
+    fn adjoint_condition(&self, condition: &AdjointCondition) -> Formula {
         let mut parts = Vec::new();
         // The highest derivative first, as it is solved for.
         for (jet, symbol) in condition.combination.iter().rev() {
             for (&(x, absx), &id) in symbol {
                 let jet = Jet { x, absx, ..*jet };
-                let mark = printer.named_jet(&self.adjoint_fields[jet.of], jet, "");
-                parts.push(self.scaled(id, &mark));
+                let field = self
+                    .letters
+                    .named_jet(&self.adjoint_fields[jet.of], jet, Mark::None);
+                parts.push(self.scaled(id, vec![field]));
             }
         }
-        signed_sum(parts)
+        Formula::sum(parts)
     }
 
     fn nonlinear(&self, degree: usize) -> Vec<Line> {
@@ -393,60 +374,45 @@ impl<'a> Writer<'a> {
         let mut lines = vec![Line::Heading(format!("N{degree}"))];
         for (row, form) in operators.nonlinear[degree - 2].pairs() {
             let name = Label::Name(model.balances[row].name.clone());
-            let formula = if self.notation.is_flat() || form.terms.is_empty() {
-                self.form(form)
-            } else {
-                let lines = self.grouped_form(form, operators.divisors[row]);
-                self.notation.lines(&lines)
-            };
-            lines.push(Line::Formula(name, formula));
+            lines.push(Line::Formula(name, self.row(form, operators.divisors[row])));
         }
         lines
     }
 
-    fn jet(&self, jet: Jet) -> String {
-        self.printer().jet(jet, "'")
-    }
-
-    /// coefficient · what, ones left out.
-    pub(super) fn scaled(&self, coefficient: Id, what: &str) -> String {
-        let text = self.printer().factor(coefficient);
-        match text.as_str() {
-            "1" => what.to_owned(),
-            "-1" => format!("-{what}"),
-            _ => format!("{text} {what}"),
+    /// A row of N.
+    fn row(&self, form: &Form, divisor: Id) -> Formula {
+        match self.letters.arrangement {
+            Arrangement::Grouped if !form.terms.is_empty() => {
+                let graph = &self.derivation.model.graph;
+                Formula::Lines(formula::grouped(graph, &self.letters, form, divisor))
+            }
+            _ => self.form(form),
         }
     }
 
-    fn form(&self, form: &Form) -> String {
-        let mut parts = Vec::new();
-        for (monomial, &coefficient) in &form.terms {
-            let jets: Vec<String> = monomial.iter().map(|&jet| self.jet(jet)).collect();
-            parts.push(self.scaled(coefficient, &jets.join(" ")));
-        }
-        if parts.is_empty() {
-            "0".into()
-        } else {
-            signed_sum(parts)
-        }
+    fn jet(&self, jet: Jet) -> Formula {
+        self.letters.jet(jet, Mark::Prime)
+    }
+
+    fn form(&self, form: &Form) -> Formula {
+        let terms = form.terms.iter().map(|(monomial, &coefficient)| {
+            let jets = monomial.iter().map(|&jet| self.jet(jet)).collect();
+            self.scaled(coefficient, jets)
+        });
+        Formula::sum(terms)
     }
 }
 
-/// Joins terms with + and −.
-pub(super) fn signed_sum(parts: Vec<String>) -> String {
-    let mut text = String::new();
-    for part in parts {
-        match (text.is_empty(), part.strip_prefix('-')) {
-            (true, _) => text.push_str(&part),
-            (false, Some(rest)) => {
-                text.push_str(" - ");
-                text.push_str(rest);
-            }
-            (false, None) => {
-                text.push_str(" + ");
-                text.push_str(&part);
-            }
-        }
+/// A name with a mark.
+fn symbol(name: &str, mark: Mark) -> Formula {
+    Formula::Symbol {
+        name: name.to_owned(),
+        mark,
+        below: Vec::new(),
     }
-    text
+}
+
+/// ∫ integrand d(variable)
+fn integral(integrand: Formula, variable: &str) -> Formula {
+    Formula::Integral(Box::new(integrand), variable.to_owned())
 }

@@ -9,8 +9,6 @@ mod algebra;
 mod calculus;
 mod linear;
 mod node;
-mod notation;
-mod print;
 mod zero;
 
 pub use calculus::Variable;
@@ -19,8 +17,6 @@ pub use node::{
     BalanceId, CaseId, FieldId, Function, Jet, LawAtom, LawId, Node, Operator, ParameterId,
     Rational, Table,
 };
-pub use notation::{Latex, Notation, Plain};
-pub use print::Printer;
 
 use std::collections::HashMap;
 

@@ -17,7 +17,8 @@ use landau_contract::{BalanceId, FieldId, LawId, ParameterId, Table};
 pub use resolve::resolve;
 
 use crate::diagnostic::Location;
-use crate::graph::{Graph, Id, Notation, Printer};
+use crate::formula::{Arrangement, Letters};
+use crate::graph::{Graph, Id};
 
 /// A model whose form has been checked as far as names go.
 pub struct Model {
@@ -68,45 +69,21 @@ impl Model {
         self.fields.ids().filter(|&f| !self.fields[f].uniform)
     }
 
-    /// The names that its expressions are printed with.
-    pub fn lettering(&self) -> Lettering {
-        Lettering {
+    /// The names that its expressions are written with.
+    pub fn letters(&self, arrangement: Arrangement) -> Letters {
+        Letters {
             fields: self.field_names(),
             parameters: self.parameters.map(|p| p.name.clone()),
             laws: self.laws.map(|l| l.name.clone()),
             periodic: self.periodic.clone(),
             coordinate: self.coordinate().to_owned(),
+            arrangement,
         }
     }
 
     /// Name of the cross-stream coordinate.
     pub fn coordinate(&self) -> &str {
         self.interval.as_ref().map_or("y", |i| i.name.as_str())
-    }
-}
-
-/// Names of fields, parameters, laws and the coordinates.
-pub struct Lettering {
-    /// Names of the fields.
-    pub fields: Table<FieldId, String>,
-    parameters: Table<ParameterId, String>,
-    laws: Table<LawId, String>,
-    periodic: String,
-    coordinate: String,
-}
-
-impl Lettering {
-    /// A printer of expressions of `graph`.
-    pub fn printer<'a>(&'a self, graph: &'a Graph, notation: &'a dyn Notation) -> Printer<'a> {
-        Printer {
-            graph,
-            fields: &self.fields,
-            parameters: &self.parameters,
-            laws: &self.laws,
-            periodic: &self.periodic,
-            coordinate: &self.coordinate,
-            notation,
-        }
     }
 }
 

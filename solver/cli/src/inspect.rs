@@ -3,8 +3,8 @@
 use crate::arguments::{Format, OperatorName};
 use landau_codegen::derive::Derivation;
 use landau_codegen::emit::text::{self, Section, Typeset};
+use landau_codegen::formula::{Arrangement, Formula, latex, latex_words, plain};
 use landau_codegen::generate;
-use landau_codegen::graph::{Latex, Notation, Plain};
 use landau_report::library::{Library, sources, taped};
 use landau_report::reproduce::{Errata, Formulas, all_explained};
 use landau_solver::error::{Error, Result};
@@ -141,9 +141,7 @@ pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format
                 for row in text::latex(&derivation, section) {
                     let row = match row {
                         Typeset::Formula(row) => row,
-                        Typeset::Heading(words) | Typeset::Words(words) => {
-                            text::latex_words(&words)
-                        }
+                        Typeset::Heading(words) | Typeset::Words(words) => latex_words(&words),
                     };
                     say!("\\[ {row} \\]");
                 }
@@ -158,12 +156,12 @@ pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format
 /// # Errors
 /// A difference that the file does not explain.
 pub fn explain_against(model: &dyn Model, file: &Path, format: Format) -> Result<()> {
-    let notation: &dyn Notation = match format {
-        Format::Text => &Plain,
-        Format::Latex => &Latex,
+    let (arrangement, written): (_, fn(&Formula) -> String) = match format {
+        Format::Text => (Arrangement::Flat, plain),
+        Format::Latex => (Arrangement::Grouped, latex),
     };
     let errata = Errata::read(file)?;
-    let judgements = errata.judge(&mut derive(model)?, notation)?;
+    let judgements = errata.judge(&mut derive(model)?, arrangement)?;
     say!("{}", errata.source);
     for judgement in &judgements {
         let (terms, wrong) = (judgement.terms, judgement.differences.len());
@@ -173,6 +171,7 @@ pub fn explain_against(model: &dyn Model, file: &Path, format: Format) -> Result
         };
         say!("{} ({}): {verdict}", judgement.number, judgement.about);
         for [printed, derived] in &judgement.differences {
+            let [printed, derived] = [printed, derived].map(written);
             say!("    printed {printed}, derived {derived}");
         }
         for slip in &judgement.slips {
@@ -207,7 +206,7 @@ fn derive(model: &dyn Model) -> Result<Derivation> {
 pub fn formulas(model: &dyn Model, errata: Option<&Errata>) -> Result<Formulas> {
     let mut derivation = derive(model)?;
     let errata = match errata {
-        Some(errata) => errata.judge(&mut derivation, &Latex)?,
+        Some(errata) => errata.judge(&mut derivation, Arrangement::Grouped)?,
         None => Vec::new(),
     };
     let title = |section: &Section| match section {

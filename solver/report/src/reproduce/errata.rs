@@ -8,7 +8,7 @@ use landau_codegen::derive::Derivation;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::difference;
 use landau_codegen::errata::{Abbreviations, Comparison, Formula, Subject, compare};
-use landau_codegen::graph::Notation;
+use landau_codegen::formula::{Arrangement, Formula as Tree};
 use landau_codegen::model::End;
 use landau_solver::error::{Error, Result};
 use serde::Deserialize;
@@ -114,7 +114,7 @@ pub struct Judgement {
     /// Terms of either side.
     pub terms: usize,
     /// Terms that differ: as printed, as derived.
-    pub differences: Vec<[String; 2]>,
+    pub differences: Vec<[Tree; 2]>,
     /// What the slips do not explain.
     pub unexplained: Option<String>,
 }
@@ -137,7 +137,7 @@ impl Errata {
     pub fn judge(
         &self,
         derivation: &mut Derivation,
-        notation: &dyn Notation,
+        arrangement: Arrangement,
     ) -> Result<Vec<Judgement>> {
         let abbreviations: Abbreviations = self
             .abbreviation
@@ -153,7 +153,7 @@ impl Errata {
             let printed = against(&entry.printed)?;
             let unexplained = entry.unexplained(&printed, &mut against)?;
             let subject = entry.subject();
-            let sides = |d| difference::sides(derivation, &subject, d, notation);
+            let sides = |d| difference::sides(derivation, &subject, d, arrangement);
             Ok(Judgement {
                 number: entry.number.clone(),
                 about: entry.about(),

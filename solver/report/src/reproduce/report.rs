@@ -4,6 +4,7 @@ use super::Workshop;
 use super::errata::Judgement;
 use super::outcome::{Claim, Number, Outcome, Verdict};
 use landau_codegen::emit::text::Typeset;
+use landau_codegen::formula::latex;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::write_whole;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -189,7 +190,7 @@ fn errata(judgements: &[Judgement]) -> Result<Markup> {
     for judgement in judgements {
         let mut differences = Vec::new();
         for [printed, derived] in &judgement.differences {
-            differences.push([mathml(printed)?, mathml(derived)?]);
+            differences.push([mathml(&latex(printed))?, mathml(&latex(derived))?]);
         }
         rows.push(html! {
             tr {

@@ -1,0 +1,211 @@
+//! A formula in LaTeX, without packages beyond amsmath.
+
+use super::{Binding, Formula, Mark};
+use crate::graph::Rational;
+use num_traits::Signed;
+
+/// Names that LaTeX has a letter for.
+const GREEK: [&str; 23] = [
+    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa",
+    "lambda", "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi",
+    "omega",
+];
+
+/// Words as LaTeX sets them inside a formula.
+pub fn latex_words(text: &str) -> String {
+    format!("\\text{{{}}}", text.replace('_', " "))
+}
+
+/// n^{0}_{y} v^{\prime} + \tfrac{1}{2} \sqrt{T^{0}}
+pub fn latex(formula: &Formula) -> String {
+    match formula {
+        Formula::Number(value) => number(value),
+        Formula::Letter(name) => letter(name),
+        Formula::Symbol { name, mark, below } => symbol(name, *mark, "", below),
+        Formula::Partial(coordinate, power) => {
+            format!(
+                "\\partial_{{{}}}{}",
+                letter(coordinate),
+                superscript(*power)
+            )
+        }
+        Formula::Modulus(coordinate, power) => {
+            let below = letter(coordinate);
+            format!("|\\partial_{{{below}}}|{}", superscript(*power))
+        }
+        Formula::Of(operator, what) => latex(operator) + &at(what, Binding::Atom),
+        Formula::Negative(inside) => format!("-{}", at(inside, Binding::Product)),
+        Formula::Sum(_) => sum(formula),
+        Formula::Product(factors) => product(factors),
+        // The bar of a fraction is bracket enough.
+        Formula::Fraction(above, below) => {
+            format!("\\frac{{{}}}{{{}}}", latex(above), latex(below))
+        }
+        Formula::Power(base, exponent) => power(base, exponent),
+        Formula::Root(inside) => format!("\\sqrt{{{}}}", latex(inside)),
+        Formula::Call(function, argument) => call(function, argument),
+        Formula::Choice(switch, branches) => {
+            let branches: Vec<String> = branches.iter().map(latex).collect();
+            let (branches, switch) = (branches.join(",\\; "), letter(switch));
+            format!("\\left\\{{{branches}\\right\\}}_{{{switch}}}")
+        }
+        Formula::Integral(integrand, variable) => {
+            let (integrand, variable) = (latex(integrand), letter(variable));
+            format!("\\int {integrand}\\,\\mathrm{{d}}{variable}")
+        }
+        Formula::Lines(lines) => aligned(lines),
+        Formula::Equation(left, right) => format!("{} = {}", latex(left), latex(right)),
+        Formula::Marked(inside) => format!("\\boxed{{{}}}", latex(inside)),
+    }
+}
+
+/// In brackets where it holds less tightly than its surroundings.
+fn at(formula: &Formula, context: Binding) -> String {
+    let text = latex(formula);
+    match formula.binding() < context {
+        true => bracketed(&text),
+        false => text,
+    }
+}
+
+/// Round brackets; square ones around round ones and around operators.
+fn bracketed(inside: &str) -> String {
+    match inside.contains("\\left(") || inside.contains("\\partial") {
+        true => format!("\\left[{inside}\\right]"),
+        false => format!("\\left({inside}\\right)"),
+    }
+}
+
+fn sum(formula: &Formula) -> String {
+    let mut text = String::new();
+    for (negative, term) in formula.terms() {
+        text += match (text.is_empty(), negative) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        text += &at(term, Binding::Product);
+    }
+    text
+}
+
+/// Factors side by side, with a space where names of several letters would run together.
+fn product(factors: &[Formula]) -> String {
+    let mut text = String::new();
+    for (index, factor) in factors.iter().enumerate() {
+        let long = |f: &Formula| matches!(f, Formula::Letter(name) | Formula::Symbol { name, .. } if is_word(name));
+        if index > 0 {
+            text += match long(factor) || long(&factors[index - 1]) {
+                true => "\\, ",
+                false => " ",
+            };
+        }
+        text += &at(factor, Binding::Product);
+    }
+    text
+}
+
+/// Whether a name is set upright, as a word.
+fn is_word(name: &str) -> bool {
+    let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    stem.chars().count() > 1 && !GREEK.contains(&stem)
+}
+
+/// A sum that goes on from line to line, its signs below one another.
+fn aligned(lines: &[Formula]) -> String {
+    let mut text = String::from("\\begin{aligned}");
+    for (index, line) in lines.iter().enumerate() {
+        let line = latex(line);
+        let line = match line.strip_prefix('-') {
+            Some(rest) => format!("-\\,{rest}"),
+            None if index > 0 => format!("+\\,{line}"),
+            None => line,
+        };
+        let end = if index > 0 { " \\\\ " } else { " " };
+        text += &format!("{end}& {line}");
+    }
+    text + " \\end{aligned}"
+}
+
+/// A name, what stands above it with one more superscript, what stands below it.
+fn symbol(name: &str, mark: Mark, exponent: &str, below: &[String]) -> String {
+    let (name, dagger) = match name.strip_suffix('†') {
+        Some(name) => (name, "\\dagger"),
+        None => (name, ""),
+    };
+    let mark = match mark {
+        Mark::None => "",
+        Mark::Base => "0",
+        Mark::Prime => "\\prime",
+    };
+    let mut text = letter(name);
+    let above = format!("{mark}{dagger}{exponent}");
+    if !above.is_empty() {
+        text += &format!("^{{{above}}}");
+    }
+    if !below.is_empty() {
+        let below: Vec<String> = below.iter().map(|s| letter(s)).collect();
+        text += &format!("_{{{}}}", below.join(" "));
+    }
+    text
+}
+
+fn superscript(power: u8) -> String {
+    match power {
+        1 => String::new(),
+        n => format!("^{{{n}}}"),
+    }
+}
+
+/// A name as a letter: Greek, one letter, or upright; digits at its end below it.
+fn letter(name: &str) -> String {
+    let (stem, digits) = name.split_at(name.trim_end_matches(|c: char| c.is_ascii_digit()).len());
+    let stem = if GREEK.contains(&stem) {
+        format!("\\{stem}")
+    } else if stem.chars().count() == 1 {
+        stem.to_owned()
+    } else if stem == "π" {
+        "\\pi".to_owned()
+    } else {
+        format!("\\mathrm{{{}}}", stem.replace('_', "\\_"))
+    };
+    match digits {
+        "" => stem,
+        digits => format!("{stem}_{{{digits}}}"),
+    }
+}
+
+fn number(value: &Rational) -> String {
+    match value.is_integer() {
+        true => value.to_string(),
+        false => format!("\\tfrac{{{}}}{{{}}}", value.numer(), value.denom()),
+    }
+}
+
+fn power(base: &Formula, exponent: &Rational) -> String {
+    let sign = if exponent.is_negative() { "-" } else { "" };
+    let exponent = format!("{sign}{}", number(&exponent.abs()));
+    match base {
+        // n'²
+        Formula::Symbol {
+            name,
+            mark: Mark::Prime,
+            below,
+        } if below.is_empty() => symbol(name, Mark::Prime, &format!(" {exponent}"), &[]),
+        // A symbol that has a superscript already.
+        Formula::Symbol { name, mark, .. } if *mark != Mark::None || name.ends_with('†') => {
+            format!("{}^{{{exponent}}}", bracketed(&latex(base)))
+        }
+        _ => format!("{}^{{{exponent}}}", at(base, Binding::Atom)),
+    }
+}
+
+fn call(function: &str, argument: &Formula) -> String {
+    let name = match function {
+        "exp" | "log" | "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" => format!("\\{function}"),
+        "atan" => "\\arctan".to_owned(),
+        other => format!("\\mathrm{{{other}}}"),
+    };
+    format!("{name}{}", bracketed(&latex(argument)))
+}
