@@ -1,6 +1,6 @@
 //! Kernels and operators → Rust and readable text.
 
-pub mod difference;
+pub mod comparison;
 pub mod literal;
 pub mod rust;
 pub mod text;

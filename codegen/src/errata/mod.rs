@@ -5,12 +5,17 @@
 //! total derivatives such as p⁰_y opened by the chain rule.
 
 mod derived;
+mod latex;
 mod terms;
+mod token;
+
+pub use token::symbols;
 
 use crate::derive::{Derivation, Form, Monomial};
-use crate::diagnostic::{Diagnostics, SourceFile};
+use crate::diagnostic::{Diagnostic, Diagnostics, Location, SourceFile};
 use crate::graph::{Graph, Id, Node, Rational};
 use crate::model::End;
+use latex::{Letters, Vocabulary};
 use num_traits::One;
 use std::collections::BTreeSet;
 
@@ -37,7 +42,7 @@ pub enum Subject {
 
 impl Subject {
     /// Whether the formula says that something vanishes, so that a factor means nothing.
-    fn is_equation(&self) -> bool {
+    pub(crate) fn is_equation(&self) -> bool {
         matches!(
             self,
             Subject::Balance(_)
@@ -48,13 +53,33 @@ impl Subject {
     }
 }
 
+/// What a printed formula is written in.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Language {
+    /// The notation of the spec; n0, p0_nT are base values, u a perturbation.
+    Spec,
+    /// LaTeX as the source has it.
+    Latex,
+}
+
+/// What printed formulas share.
+#[derive(Clone, Default, Debug)]
+pub struct Notation {
+    /// Abbreviations, in order: name, and text in the notation of the spec.
+    pub abbreviations: Vec<(String, String)>,
+    /// Vectors by letter, their components along the periodic and the cross-stream coordinate.
+    pub vectors: Vec<(String, [String; 2])>,
+}
+
 /// A printed formula.
 #[derive(Clone, Debug)]
 pub struct Formula {
     /// What it is a formula of.
     pub subject: Subject,
-    /// Its number, and its text in the notation of the spec; n0, p0_nT are base values.
+    /// Its number, and its text.
     pub source: SourceFile,
+    /// What the text is written in.
+    pub language: Language,
     /// Parameters that the formula has no letter for, with their values or choices.
     pub setting: Vec<(String, String)>,
 }
@@ -77,10 +102,20 @@ pub struct Comparison {
     pub terms: usize,
     /// Terms that differ.
     pub differences: Vec<Difference>,
+    /// Brackets of the printed formula that are never closed.
+    pub unclosed: usize,
+    /// What was derived, as one expression.
+    pub subject: Id,
+    /// The same as a polynomial in the fields' derivatives.
+    pub derived: Form,
 }
 
-/// Abbreviations that printed formulas share, in order: name and text.
-pub type Abbreviations = Vec<(String, String)>;
+impl Comparison {
+    /// Whether nothing differs.
+    pub fn agrees(&self) -> bool {
+        self.differences.is_empty() && self.unclosed == 0
+    }
+}
 
 /// Compares a printed formula with what was derived.
 ///
@@ -88,13 +123,17 @@ pub type Abbreviations = Vec<(String, String)>;
 /// A formula that cannot be read, or a subject that the model does not have.
 pub fn compare(
     derivation: &mut Derivation,
-    abbreviations: &Abbreviations,
+    notation: &Notation,
     formula: &Formula,
 ) -> Result<Comparison, Diagnostics> {
-    let printed = printed(derivation, abbreviations, &formula.source)?;
+    let (source, unclosed) = match formula.language {
+        Language::Spec => (formula.source.clone(), 0),
+        Language::Latex => in_spec(derivation, notation, formula)?,
+    };
+    let printed = printed(derivation, &notation.abbreviations, &source)?;
     let setting = derived::setting(derivation, formula)?;
-    let derived = derived::subject(derivation, formula, &setting)?;
-    let mut sides = [printed, derived].map(|id| match formula.subject {
+    let subject = derived::subject(derivation, formula, &setting)?;
+    let mut sides = [printed, subject].map(|id| match formula.subject {
         // A law is one term, whatever it is a function of.
         Subject::Law(_) => {
             let id = terms::open_law(derivation, id);
@@ -111,13 +150,70 @@ pub fn compare(
         let factor = relative_factor(&mut derivation.model.graph, &sides[0], &sides[1]);
         sides[0] = sides[0].times(&mut derivation.model.graph, factor);
     }
-    Ok(difference(derivation, &sides[0], &sides[1]))
+    let (terms, differences) = differences(derivation, &sides[0], &sides[1]);
+    let [_, derived] = sides;
+    Ok(Comparison {
+        terms,
+        differences,
+        unclosed,
+        subject,
+        derived,
+    })
+}
+
+/// A formula in LaTeX, in the notation of the spec, and the brackets that it leaves open.
+fn in_spec(
+    derivation: &Derivation,
+    notation: &Notation,
+    formula: &Formula,
+) -> Result<(SourceFile, usize), Diagnostics> {
+    let model = &derivation.model;
+    let fields: Vec<String> = model.fields.iter().map(|f| f.name.clone()).collect();
+    let laws: Vec<String> = model.laws.iter().map(|l| l.name.clone()).collect();
+    let parameters = model.parameters.iter().map(|p| p.name.clone());
+    let abbreviations = notation.abbreviations.iter().map(|(name, _)| name.clone());
+    let constants: Vec<String> = parameters.chain(abbreviations).collect();
+    let (letters, operand) = match &formula.subject {
+        Subject::Balance(_) | Subject::Law(_) => (Letters::State, None),
+        Subject::Base(_) => (Letters::Base, None),
+        Subject::Nonlinear(..) => (Letters::Perturbation, None),
+        Subject::Linear(_, field)
+        | Subject::Adjoint(_, field)
+        | Subject::Condition(_, field)
+        | Subject::AdjointCondition(_, field) => (Letters::Perturbation, Some(field.as_str())),
+    };
+    let vocabulary = Vocabulary {
+        fields: &fields,
+        laws: &laws,
+        constants: &constants,
+        vectors: &notation.vectors,
+        coordinates: [&model.periodic, model.coordinate()],
+        letters,
+        operand,
+    };
+    let read = latex::read(&formula.source.text, &vocabulary).map_err(|mistake| {
+        let (file, range) = (0, mistake.range);
+        let place = Location { file, range };
+        Diagnostics {
+            files: vec![formula.source.clone()],
+            list: vec![Diagnostic::new(
+                place,
+                mistake.message,
+                "a formula as papers print it",
+            )],
+        }
+    })?;
+    let source = SourceFile {
+        path: format!("{}, as it is read", formula.source.path),
+        text: read.text,
+    };
+    Ok((source, read.unclosed))
 }
 
 /// The printed text as an expression.
 fn printed(
     derivation: &mut Derivation,
-    abbreviations: &Abbreviations,
+    abbreviations: &[(String, String)],
     source: &SourceFile,
 ) -> Result<Id, Diagnostics> {
     let mut known = Vec::new();
@@ -170,7 +266,12 @@ fn sign(graph: &mut Graph, like: Id, of: Id) -> Id {
     graph.number(value)
 }
 
-fn difference(derivation: &mut Derivation, printed: &Form, derived: &Form) -> Comparison {
+/// How many terms either side has, and those that differ.
+fn differences(
+    derivation: &mut Derivation,
+    printed: &Form,
+    derived: &Form,
+) -> (usize, Vec<Difference>) {
     let monomials: BTreeSet<&Monomial> = printed.terms.keys().chain(derived.terms.keys()).collect();
     let mut differences = Vec::new();
     let (mut terms, zero) = (0, derivation.model.graph.zero());
@@ -197,5 +298,5 @@ fn difference(derivation: &mut Derivation, printed: &Form, derived: &Form) -> Co
             });
         }
     }
-    Comparison { terms, differences }
+    (terms, differences)
 }

@@ -11,6 +11,11 @@ const GREEK: [&str; 23] = [
     "omega",
 ];
 
+/// Whether LaTeX has a letter of this name.
+pub(crate) fn is_greek(name: &str) -> bool {
+    GREEK.contains(&name)
+}
+
 /// Words as LaTeX sets them inside a formula.
 pub fn latex_words(text: &str) -> String {
     format!("\\text{{{}}}", text.replace('_', " "))
@@ -55,7 +60,6 @@ pub fn latex(formula: &Formula) -> String {
         }
         Formula::Lines(lines) => aligned(lines),
         Formula::Equation(left, right) => format!("{} = {}", latex(left), latex(right)),
-        Formula::Marked(inside) => format!("\\boxed{{{}}}", latex(inside)),
     }
 }
 
@@ -109,7 +113,7 @@ fn product(factors: &[Formula]) -> String {
 /// Whether a name is set upright, as a word.
 fn is_word(name: &str) -> bool {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    stem.chars().count() > 1 && !GREEK.contains(&stem)
+    stem.chars().count() > 1 && !is_greek(stem)
 }
 
 /// A sum that goes on from line to line, its signs below one another.
@@ -161,7 +165,7 @@ fn superscript(power: u8) -> String {
 /// A name as a letter: Greek, one letter, or upright; digits at its end below it.
 fn letter(name: &str) -> String {
     let (stem, digits) = name.split_at(name.trim_end_matches(|c: char| c.is_ascii_digit()).len());
-    let stem = if GREEK.contains(&stem) {
+    let stem = if is_greek(stem) {
         format!("\\{stem}")
     } else if stem.chars().count() == 1 {
         stem.to_owned()
@@ -205,7 +209,10 @@ fn call(function: &str, argument: &Formula) -> String {
     let name = match function {
         "exp" | "log" | "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" => format!("\\{function}"),
         "atan" => "\\arctan".to_owned(),
-        other => format!("\\mathrm{{{other}}}"),
+        other => match other.strip_prefix('∂') {
+            Some(coordinate) => format!("\\partial_{{{}}}", letter(coordinate)),
+            None => format!("\\mathrm{{{other}}}"),
+        },
     };
     format!("{name}{}", bracketed(&latex(argument)))
 }

@@ -10,6 +10,7 @@ mod letters;
 mod plain;
 
 pub use group::{Coefficient, grouped, over_common_denominator};
+pub(crate) use latex::is_greek;
 pub use latex::{latex, latex_words};
 pub use letters::{Arrangement, Letters};
 pub use plain::plain;
@@ -72,8 +73,6 @@ pub enum Formula {
     Lines(Vec<Formula>),
     /// left = right
     Equation(Box<Formula>, Box<Formula>),
-    /// What another formula has otherwise.
-    Marked(Box<Formula>),
 }
 
 /// How tightly a formula holds together.
@@ -182,7 +181,6 @@ impl Formula {
             Formula::Number(value) if value.is_integer() => Binding::Atom,
             Formula::Number(_) | Formula::Product(_) | Formula::Fraction(..) => Binding::Product,
             Formula::Power(..) | Formula::Root(_) => Binding::Power,
-            Formula::Marked(inside) => inside.binding(),
             Formula::Letter(_)
             | Formula::Symbol { .. }
             | Formula::Partial(..)

@@ -57,7 +57,6 @@ pub fn plain(formula: &Formula) -> String {
         Formula::Integral(integrand, variable) => format!("∫ {} d{variable}", plain(integrand)),
         Formula::Lines(lines) => sum(&Formula::Sum(lines.clone())),
         Formula::Equation(left, right) => format!("{} = {}", plain(left), plain(right)),
-        Formula::Marked(inside) => plain(inside),
     }
 }
 

@@ -165,9 +165,9 @@ pub fn explain_against(model: &dyn Model, file: &Path, format: Format) -> Result
     say!("{}", errata.source);
     for judgement in &judgements {
         let (terms, wrong) = (judgement.terms, judgement.differences.len());
-        let verdict = match wrong {
-            0 => "agrees".to_owned(),
-            _ => format!("{wrong} of {terms} terms differ"),
+        let verdict = match judgement.agrees {
+            true => "agrees".to_owned(),
+            false => format!("{wrong} of {terms} terms differ"),
         };
         say!("{} ({}): {verdict}", judgement.number, judgement.about);
         for [printed, derived] in &judgement.differences {
@@ -190,8 +190,11 @@ pub fn explain_against(model: &dyn Model, file: &Path, format: Format) -> Result
             say!("  not explained: {open}");
         }
     }
-    let agree = judgements.iter().filter(|j| j.differences.is_empty());
+    let agree = judgements.iter().filter(|j| j.agrees);
     say!("{} of {} formulas agree", agree.count(), judgements.len());
+    for remark in &errata.remark {
+        say!("{}, not compared: {}", remark.number, remark.why);
+    }
     all_explained(&judgements)
 }
 

@@ -10,7 +10,7 @@ mod report;
 mod study;
 mod task;
 
-pub use errata::{Errata, Judgement, all_explained};
+pub use errata::{Errata, Judgement, Remark, all_explained};
 pub use outcome::{Claim, Number, Outcome, Picture, Table, Verdict};
 pub use report::Formulas;
 pub use study::Study;

@@ -214,7 +214,7 @@ fn errata(judgements: &[Judgement]) -> Result<Markup> {
             }
         });
     }
-    let agree = judgements.iter().filter(|j| j.differences.is_empty());
+    let agree = judgements.iter().filter(|j| j.agrees);
     Ok(html! {
         section id="errata" {
             h2 { "The printed formulas" }
