@@ -51,7 +51,7 @@ pub enum Command {
         #[arg(long, default_value_t = 41)]
         points: usize,
         /// A picture.
-        #[arg(long, value_name = "FILE.svg")]
+        #[arg(long, value_name = "FILE.svg|png")]
         plot: Option<PathBuf>,
         #[command(flatten)]
         common: Common,
@@ -67,7 +67,7 @@ pub enum Command {
         #[arg(long, allow_negative_numbers = true)]
         k: Option<f64>,
         /// The eigenvalues of L and L† in the complex plane.
-        #[arg(long, value_name = "FILE.svg")]
+        #[arg(long, value_name = "FILE.svg|png")]
         plot: Option<PathBuf>,
         #[command(flatten)]
         common: Common,
@@ -86,7 +86,7 @@ pub enum Command {
         #[arg(long, default_value_t = 3)]
         order: usize,
         /// The modes of the expansion and the adjoint mode as profiles.
-        #[arg(long, value_name = "FILE.svg")]
+        #[arg(long, value_name = "FILE.svg|png")]
         plot: Option<PathBuf>,
         /// The same as data (repeatable): .npz or .nc.
         #[arg(long, value_name = "FILE")]
@@ -113,7 +113,7 @@ pub enum Command {
     },
     /// Where growth or c2 changes sign, or c2 jumps through infinity.
     #[command(
-        after_help = "Examples:\n  landau critical my.model --vary k --from 0.1 --to 0.2\n  landau critical my.model --vary k --from 0.06 --to 0.1 --of c2\n  landau critical my.model --vary S --from 50 --to 100 --k 0.16\n  landau critical my.model --vary R --from 5000 --to 6500 --minimize k=0.9:1.1"
+        after_help = "Examples:\n  landau critical my.model --vary k --from 0.1 --to 0.2\n  landau critical my.model --vary k --from 0.06 --to 0.1 --of c2\n  landau critical my.model --vary S --from 50 --to 100 --k 0.16\n  landau critical my.model --vary R --from 5000 --to 6500 --minimize k=0.9:1.1\n  landau critical my.model --vary k --from 0.1 --to 0.2 --plot growth.svg"
     )]
     Critical {
         /// A built model, or the path of a .model file.
@@ -220,6 +220,9 @@ pub struct CriticalOptions {
     /// The extremum over a range of k.
     #[arg(long, value_name = "k=A:B")]
     pub minimize: Option<String>,
+    /// A picture of the quantity over the range, and where it vanishes; with --minimize, of the growth rate over k.
+    #[arg(long, value_name = "FILE.svg|png")]
+    pub plot: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -237,7 +240,7 @@ pub struct SweepOptions {
     #[arg(long)]
     pub force: bool,
     /// A picture of growth rate, c2 and amplitude over the first axis.
-    #[arg(long, value_name = "FILE.svg")]
+    #[arg(long, value_name = "FILE.svg|png")]
     pub plot: Option<PathBuf>,
     /// A further column (repeatable): an output of the model by name, at the equilibrium amplitude; or an expression in
     /// the base state, as `S*T at upper`, `T at lower`, `integral(n)`.
@@ -300,7 +303,7 @@ pub struct PatternOptions {
     /// The fields that are drawn as arrows, along and across; none by default.
     #[arg(long, value_name = "FIELD,FIELD")]
     pub arrows: Option<String>,
-    /// Where it goes (repeatable): .svg is a picture, .npz, .nc and .vtk are data.
+    /// Where it goes (repeatable): .svg and .png are pictures, .npz, .nc and .vtk are data.
     #[arg(long, value_name = "FILE", required = true)]
     pub out: Vec<PathBuf>,
 }

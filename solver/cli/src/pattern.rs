@@ -4,10 +4,9 @@ use crate::arguments::{Common, PatternOptions};
 use crate::asked::asked;
 use landau_report::data::FORMATS;
 use landau_report::data::plane::{attributes, dataset};
-use landau_report::figure::{Part, pattern_lines, pattern_pair};
+use landau_report::figure::{Drawing, Part, is_picture, pattern_lines, pattern_pair};
 use landau_report::library::expression;
 use landau_solver::error::{Error, Result};
-use landau_solver::file::write_whole;
 use landau_solver::model::{Expression, FieldId};
 use landau_solver::study::{Setup, check_wavenumber};
 use landau_solver::weakly::{Pattern, Window, pattern as expand};
@@ -20,9 +19,9 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
     let window = window(options)?;
     for path in &options.out {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-        if extension != "svg" && !FORMATS.contains(&extension) {
+        if !is_picture(path) && !FORMATS.contains(&extension) {
             return Err(Error::input(format!(
-                "--out {}: it accepts .svg, .{}",
+                "--out {}: it accepts .svg, .png, .{}",
                 path.display(),
                 FORMATS.join(", .")
             )));
@@ -49,8 +48,8 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
     let found = expand(&point, amplitude, window, &expressions)?;
     let attributes = attributes(setup, &state.parameters, k, Some(amplitude));
     for path in &options.out {
-        if path.extension().is_some_and(|e| e == "svg") {
-            write_whole(path, picture(setup, options, k, &found)?.as_bytes())?;
+        if is_picture(path) {
+            picture(setup, options, k, &found)?.write(path)?;
         } else {
             dataset(setup, &found, attributes.clone()).write(path)?;
         }
@@ -111,7 +110,7 @@ fn shaded(setup: &Setup, options: &PatternOptions) -> Result<Vec<Expression>> {
     wanted.map(|text| expression(model, text)).collect()
 }
 
-fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> Result<String> {
+fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> Result<Drawing> {
     let field = |name: &str| {
         found.quantity(name.trim()).ok_or_else(|| {
             let names: Vec<&str> = found.fields.iter().map(|f| f.name.as_str()).collect();

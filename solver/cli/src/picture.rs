@@ -4,9 +4,8 @@ use crate::arguments::Common;
 use crate::asked::asked;
 use landau_report::data::plane::{attributes, modes as dataset};
 use landau_report::figure;
-use landau_report::figure::{Panel, Style, panels};
+use landau_report::figure::{Drawing, Panel, Style, atlas, is_picture, panels};
 use landau_solver::error::{Error, Result};
-use landau_solver::file::write_whole;
 use landau_solver::study::Setup;
 use landau_solver::study::modes::Modes;
 use landau_solver::study::row::{Column, Row, column};
@@ -16,22 +15,31 @@ use std::path::{Path, PathBuf};
 /// Writes a picture where one is asked for.
 ///
 /// # Errors
-/// A path that is no .svg or cannot be written; an answer that has nothing to draw.
-pub fn drawn(path: Option<&Path>, draw: impl FnOnce() -> Option<String>) -> Result<()> {
+/// A path that is no .svg or .png or cannot be written; an answer that has nothing to draw.
+pub fn drawn(path: Option<&Path>, draw: impl FnOnce() -> Option<Drawing>) -> Result<()> {
     let Some(path) = path else { return Ok(()) };
-    if path.extension().is_none_or(|e| e != "svg") {
-        return Err(Error::input(format!(
-            "--plot {}: it accepts .svg",
-            path.display()
-        )));
-    }
+    accepted(Some(path))?;
     let drawn = draw().ok_or_else(|| {
         Error::input(format!(
             "--plot {}: there is no profile to draw, for the model has no cross-stream coordinate",
             path.display()
         ))
     })?;
-    write_whole(path, drawn.as_bytes())
+    drawn.write(path)
+}
+
+/// Whether a picture could be written there, before anything is computed.
+///
+/// # Errors
+/// A path that is no .svg or .png.
+pub fn accepted(path: Option<&Path>) -> Result<()> {
+    match path {
+        Some(path) if !is_picture(path) => Err(Error::input(format!(
+            "--plot {}: it accepts .svg, .png",
+            path.display()
+        ))),
+        _ => Ok(()),
+    }
 }
 
 /// The modes at a wavenumber, drawn and stored where that is asked for.
@@ -84,8 +92,13 @@ pub fn table(sweep: &Sweep, rows: &[Row]) {
     }
 }
 
-/// Growth rate, c2 and amplitude over the first axis, as SVG.
-pub fn sweep(setup: &Setup, sweep: &Sweep, rows: &[Row]) -> Option<String> {
+/// Growth rate, c2 and amplitude over one axis, lines in the plane over two, drawn.
+pub fn sweep(setup: &Setup, sweep: &Sweep, rows: &[Row]) -> Option<Drawing> {
+    let title = &setup.model.structure().title;
+    if let [first, second] = sweep.ranges.as_slice() {
+        let names = [first, second].map(|r| r.name.as_str());
+        return atlas(title, names, [&first.values, &second.values], rows);
+    }
     let axis = sweep.ranges[0].name.as_str();
     let mut growth = Panel::new("growth rate", axis, "a0");
     let mut landau = Panel::new("first Landau coefficient", axis, "a2");
@@ -106,5 +119,5 @@ pub fn sweep(setup: &Setup, sweep: &Sweep, rows: &[Row]) -> Option<String> {
             amplitude.curve_with_poles(&label, Style::Dashed, threshold);
         }
     }
-    panels(&setup.model.structure().title, &[growth, landau, amplitude])
+    panels(title, &[growth, landau, amplitude])
 }

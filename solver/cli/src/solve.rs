@@ -7,7 +7,7 @@ use crate::{cluster, interrupt, picture};
 use landau_report::figure;
 use landau_report::library::column;
 use landau_solver::error::{Error, Result};
-use landau_solver::file::{destination, write_whole};
+use landau_solver::file::destination;
 use landau_solver::model::{FieldId, Table};
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{Quantity, Question};
@@ -166,12 +166,35 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         k,
         near: common.near,
     };
+    picture::accepted(options.plot.as_deref())?;
     let bar = Bar::new("scanning");
     let found = match range_of_k {
         Some(bounds) => vec![minimise(setup, question, bounds, &bar)?],
-        None => criticality::critical(setup, question, &bar)?,
+        None => {
+            let scan = criticality::scan(setup, question, &bar)?;
+            picture::drawn(options.plot.as_deref(), || {
+                figure::critical(&setup.model.structure().title, &options.vary, name, &scan)
+            })?;
+            scan.critical(&question)?
+        }
     };
     let first = &found[0];
+    if let (Some(plot), Some((from, to))) = (&options.plot, range_of_k) {
+        let at_extremum = setup.moved(axis, first.value)?;
+        let over_k = Question {
+            axis: Axis::Wavenumber,
+            from,
+            to,
+            k: None,
+            near: Some(first.c0),
+            ..question
+        };
+        let scan = criticality::scan(&at_extremum, over_k, &bar)?;
+        picture::drawn(Some(plot), || {
+            let title = format!("{} = {:.6}", options.vary, first.value);
+            figure::critical(&title, "k", name, &scan)
+        })?;
+    }
     if found.len() > 1 {
         let others: Vec<String> = found[1..]
             .iter()
@@ -270,6 +293,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
         return cluster::run_share(&sweep, share, options, common);
     }
     if let Some(plot) = &options.plot {
+        picture::accepted(Some(plot))?;
         destination(plot)?;
     }
     if !options.force {
@@ -281,7 +305,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
     if let Some(path) = &options.plot
         && let Some(drawn) = picture::sweep(setup, &sweep, &rows)
     {
-        write_whole(path, drawn.as_bytes())?;
+        drawn.write(path)?;
     }
     let good = rows.iter().filter(|r| r.status == "ok").count();
     let unstable = rows

@@ -219,15 +219,20 @@ impl Sampler<'_> {
     }
 }
 
-/// All critical points of an interval, in order from `from` to `to`.
+/// A quantity along an interval, as far as its mode can be followed, and where it changes sign.
+#[derive(Clone, Debug)]
+pub struct Scan {
+    /// Places and values.
+    pub curve: Vec<(f64, f64)>,
+    /// In order from `from` to `to`.
+    pub found: Vec<Critical>,
+}
+
+/// The quantity of a question along its interval.
 ///
 /// # Errors
-/// An interval without one, or a mode that cannot be followed.
-pub fn critical(
-    setup: &Setup,
-    question: Question,
-    progress: &dyn Progress,
-) -> Result<Vec<Critical>> {
+/// A mode that can be found nowhere, a root that is not converged.
+pub fn scan(setup: &Setup, question: Question, progress: &dyn Progress) -> Result<Scan> {
     let sampler = Sampler { setup, question };
     let points: Vec<f64> = (0..SCAN)
         .map(|i| question.from + (question.to - question.from) * i as f64 / (SCAN - 1) as f64)
@@ -241,17 +246,40 @@ pub fn critical(
         }
     }
     progress.end();
-    if !found.is_empty() {
-        return Ok(found);
+    let curve = samples.iter().map(|s| (s.x, s.value)).collect();
+    Ok(Scan { curve, found })
+}
+
+/// All critical points of an interval, in order from `from` to `to`.
+///
+/// # Errors
+/// As [`scan`], and an interval without one.
+pub fn critical(
+    setup: &Setup,
+    question: Question,
+    progress: &dyn Progress,
+) -> Result<Vec<Critical>> {
+    scan(setup, question, progress)?.critical(&question)
+}
+
+impl Scan {
+    /// The critical points.
+    ///
+    /// # Errors
+    /// An interval without one.
+    pub fn critical(self, question: &Question) -> Result<Vec<Critical>> {
+        if !self.found.is_empty() {
+            return Ok(self.found);
+        }
+        let (first, last) = (self.curve[0], self.curve[self.curve.len() - 1]);
+        let what = match question.quantity {
+            Quantity::Growth => "the growth rate of the mode does not change sign",
+            Quantity::C2 => "c2 does not pass through zero",
+            Quantity::Resonance => "c2 does not jump through infinity",
+        };
+        Err(Error::NoCriticalPoint(format!(
+            "{what} between {} and {}: {:.4e} at {:.6}, {:.4e} at {:.6}; try another interval, or --near to name a mode",
+            question.from, question.to, first.1, first.0, last.1, last.0
+        )))
     }
-    let (first, last) = (&samples[0], &samples[samples.len() - 1]);
-    let what = match question.quantity {
-        Quantity::Growth => "the growth rate of the mode does not change sign",
-        Quantity::C2 => "c2 does not pass through zero",
-        Quantity::Resonance => "c2 does not jump through infinity",
-    };
-    Err(Error::NoCriticalPoint(format!(
-        "{what} between {} and {}: {:.4e} at {:.6}, {:.4e} at {:.6}; try another interval, or --near to name a mode",
-        question.from, question.to, first.value, first.x, last.value, last.x
-    )))
 }

@@ -1,6 +1,6 @@
 //! Panels of curves side by side.
 
-use super::{COLOURS, svg};
+use super::{COLOURS, Drawing, ticks};
 use kuva::prelude::*;
 
 /// Below this the plotting library's logarithmic axes stand still.
@@ -46,6 +46,10 @@ pub struct Panel {
     pub curves: Vec<Curve>,
     /// Where curves jump through infinity.
     pub poles: Vec<f64>,
+    /// Places along x that have a name.
+    pub marks: Vec<(f64, String)>,
+    /// What is shown along x; all points where nothing is said.
+    pub range: Option<[f64; 2]>,
 }
 
 impl Panel {
@@ -59,6 +63,8 @@ impl Panel {
             logarithmic: [false; 2],
             curves: Vec::new(),
             poles: Vec::new(),
+            marks: Vec::new(),
+            range: None,
         }
     }
 
@@ -104,6 +110,23 @@ impl Panel {
         self.curve(label, style, drawn);
     }
 
+    /// What is seen: the quantity over its axis, curve by curve.
+    fn says(&self) -> String {
+        let quantity = match (self.title.as_str(), self.y.as_str()) {
+            (title, "") => title.to_owned(),
+            ("", y) => y.to_owned(),
+            (title, y) if title == y => title.to_owned(),
+            (title, y) => format!("{title}, {y}"),
+        };
+        let labels = self.curves.iter().map(|c| c.label.as_str());
+        let labels: Vec<&str> = labels.filter(|label| !label.is_empty()).collect();
+        let curves = match labels.as_slice() {
+            [] => String::new(),
+            labels => format!(" for {}", labels.join(", ")),
+        };
+        format!("{quantity} over {}{curves}", self.x)
+    }
+
     /// Runs of points that can be drawn.
     fn runs(&self, curve: &Curve) -> Vec<Vec<(f64, f64)>> {
         let [log_x, log_y] = self.logarithmic;
@@ -117,29 +140,72 @@ impl Panel {
             .collect()
     }
 
+    /// Smallest and largest of what is drawn, along x and along y.
+    fn extent(&self) -> [[f64; 2]; 2] {
+        let mut extent = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
+        for (x, y) in self.curves.iter().flat_map(|c| self.runs(c)).flatten() {
+            for (bounds, value) in extent.iter_mut().zip([x, y]) {
+                *bounds = [bounds[0].min(value), bounds[1].max(value)];
+            }
+        }
+        if let Some(range) = self.range {
+            extent[0] = range;
+        }
+        extent
+    }
+
+    /// Axes with their labels, what is marked on them, and the numbers in one style.
+    fn layout(&self, title: String, curves: &[Plot]) -> Layout {
+        let mut layout = Layout::auto_from_plots(curves)
+            .with_title(title)
+            .with_x_label(self.x.clone())
+            .with_y_label(self.y.clone());
+        let extent = self.extent();
+        let formats = [0, 1].map(|axis| {
+            let [low, high] = extent[axis];
+            match self.logarithmic[axis] {
+                true => ticks::logarithmic(low, high),
+                false => ticks::linear(low.abs().max(high.abs())),
+            }
+        });
+        let [x, y] = formats;
+        layout = layout.with_x_tick_format(x).with_y_tick_format(y);
+        if self.logarithmic[0] {
+            layout = layout.with_log_x();
+        } else {
+            // No axis runs on to the next round number.
+            let [low, high] = extent[0];
+            let margin = match self.range {
+                Some(_) => 0.0,
+                None => 0.02 * (high - low),
+            };
+            if high > low {
+                layout = layout
+                    .with_x_axis_min(low - margin)
+                    .with_x_axis_max(high + margin);
+            }
+        }
+        if self.logarithmic[1] {
+            layout = layout.with_log_y();
+        }
+        for pole in &self.poles {
+            let line = ReferenceLine::vertical(*pole).with_color("#999999");
+            layout = layout.with_reference_line(line.with_dasharray("5 4"));
+        }
+        for (place, name) in &self.marks {
+            let line = ReferenceLine::vertical(*place).with_color("#666666");
+            let line = line.with_dasharray("2 3").with_label(name.clone());
+            layout = layout.with_reference_line(line);
+        }
+        layout
+    }
+
     fn plots(&self) -> Vec<Plot> {
         let mut plots: Vec<Plot> = Vec::new();
-        let finite = |p: &&(f64, f64)| p.0.is_finite() && p.1.is_finite();
-        let all = || {
-            self.curves
-                .iter()
-                .flat_map(|c| c.points.iter().filter(finite))
-        };
-        let (low, high) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| {
-            (a.min(p.0), b.max(p.0))
-        });
-        let signs = [all().any(|p| p.1 < 0.0), all().any(|p| p.1 > 0.0)];
-        if signs == [true, true] && !self.logarithmic[1] {
+        let [[low, high], [bottom, top]] = self.extent();
+        if bottom < 0.0 && top > 0.0 && !self.logarithmic[1] {
             let zero = LinePlot::new().with_data(vec![(low, 0.0), (high, 0.0)]);
             plots.push(zero.with_color("#999999").with_stroke_width(1.0).into());
-        }
-        let (bottom, top) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| {
-            (a.min(p.1), b.max(p.1))
-        });
-        for pole in &self.poles {
-            let line = LinePlot::new().with_data(vec![(*pole, bottom), (*pole, top)]);
-            let line = line.with_color("#999999").with_stroke_width(1.0);
-            plots.push(line.with_dashed().into());
         }
         for (index, curve) in self.curves.iter().enumerate() {
             let colour = COLOURS[index % COLOURS.len()];
@@ -170,37 +236,28 @@ impl Panel {
     }
 }
 
-/// The picture; nothing where no panel has a point.
-pub fn panels(title: &str, panels: &[Panel]) -> Option<String> {
-    let drawn: Vec<&Panel> = panels
-        .iter()
-        .filter(|panel| {
-            panel
-                .curves
-                .iter()
-                .any(|curve| !panel.runs(curve).is_empty())
-        })
-        .collect();
+/// The picture; nothing where no panel has a point. Several panels have letters.
+pub fn panels(title: &str, panels: &[Panel]) -> Option<Drawing> {
+    let drawable = |panel: &&Panel| {
+        let drawn = |curve: &Curve| !panel.runs(curve).is_empty();
+        panel.curves.iter().any(drawn)
+    };
+    let drawn: Vec<&Panel> = panels.iter().filter(drawable).collect();
     if drawn.is_empty() {
         return None;
     }
-    let (mut plots, mut layouts) = (Vec::new(), Vec::new());
-    for panel in &drawn {
+    let (mut plots, mut layouts, mut says) = (Vec::new(), Vec::new(), Vec::new());
+    for (index, panel) in drawn.iter().enumerate() {
+        let letter = match drawn.len() {
+            1 => String::new(),
+            _ => format!("({}) ", char::from(b'a' + index as u8)),
+        };
         let curves = panel.plots();
-        let mut layout = Layout::auto_from_plots(&curves)
-            .with_title(panel.title.clone())
-            .with_x_label(panel.x.clone())
-            .with_y_label(panel.y.clone());
-        if panel.logarithmic[0] {
-            layout = layout.with_log_x();
-        }
-        if panel.logarithmic[1] {
-            layout = layout.with_log_y();
-        }
+        layouts.push(panel.layout(format!("{letter}{}", panel.title), &curves));
         plots.push(curves);
-        layouts.push(layout);
+        says.push(format!("{letter}{}", panel.says()));
     }
-    let columns = drawn.len().min(3);
+    let columns = drawn.len().min(2);
     let mut figure = Figure::new(drawn.len().div_ceil(columns), columns);
     if !title.is_empty() {
         figure = figure.with_title(title);
@@ -208,8 +265,8 @@ pub fn panels(title: &str, panels: &[Panel]) -> Option<String> {
     let figure = figure
         .with_plots(plots)
         .with_layouts(layouts)
-        .with_cell_size(460.0, 360.0);
-    Some(svg(figure))
+        .with_cell_size(500.0, 390.0);
+    Some(Drawing::new(figure, says.join("; ") + "."))
 }
 
 /// Where a curve jumps through infinity: after which point, and the place at which 1/y vanishes. On both sides the

@@ -1,10 +1,11 @@
 //! Modes over the cross-stream coordinate, spectra in the complex plane, base states.
 
-use super::{Panel, Style, panels};
+use super::{Drawing, Panel, Style, panels};
 use landau_solver::base::BaseState;
 use landau_solver::model::{C64, FieldId, Structure};
 use landau_solver::space::Place;
 use landau_solver::study::Setup;
+use landau_solver::study::critical::Scan;
 use landau_solver::study::modes::{ModeProfile, Modes};
 use landau_solver::study::spectrum::SpectrumReport;
 
@@ -19,7 +20,7 @@ const REACH: f64 = 12.0;
 type Side = fn(&C64) -> f64;
 
 /// One panel a mode: real parts as lines, imaginary parts dashed.
-pub fn modes(structure: &Structure, found: &Modes) -> Option<String> {
+pub fn modes(structure: &Structure, found: &Modes) -> Option<Drawing> {
     let vertical = structure.coordinate.as_deref()?;
     let panel = |profile: &ModeProfile| {
         let mut panel = Panel::new(&profile.name, vertical, "");
@@ -42,7 +43,7 @@ pub fn modes(structure: &Structure, found: &Modes) -> Option<String> {
 }
 
 /// The slow eigenvalues of L and L† in the complex plane.
-pub fn spectrum(found: &SpectrumReport) -> Option<String> {
+pub fn spectrum(found: &SpectrumReport) -> Option<Drawing> {
     let reach = REACH * found.direct.scale();
     let shown = |c: &&C64| reach == 0.0 || c.norm() <= reach;
     let mut panel = Panel::new(
@@ -60,7 +61,7 @@ pub fn spectrum(found: &SpectrumReport) -> Option<String> {
 }
 
 /// One panel a field.
-pub fn base(setup: &Setup, state: &BaseState) -> Option<String> {
+pub fn base(setup: &Setup, state: &BaseState) -> Option<Drawing> {
     let structure = setup.model.structure();
     let vertical = structure.coordinate.as_deref()?;
     let places = state.space.evenly(POINTS);
@@ -82,4 +83,13 @@ pub fn base(setup: &Setup, state: &BaseState) -> Option<String> {
     };
     let drawn: Vec<Panel> = profiles.map(panel).collect();
     panels(&format!("{}: base state", structure.title), &drawn)
+}
+
+/// A quantity over the range in which it was asked to vanish, and where it does.
+pub fn critical(title: &str, axis: &str, quantity: &str, found: &Scan) -> Option<Drawing> {
+    let mut panel = Panel::new(title, axis, quantity);
+    panel.curve_with_poles(quantity, Style::Line, found.curve.clone());
+    let roots = found.found.iter().map(|point| (point.value, 0.0)).collect();
+    panel.curve("critical points", Style::Dots, roots);
+    panels("", &[panel])
 }

@@ -1,6 +1,6 @@
 //! A pattern: the fundamental alone beside the expansion through third order.
 
-use super::{Panel, Plane, Style, panels, planes};
+use super::{Drawing, Panel, Plane, Style, panels, planes};
 use landau_solver::model::Structure;
 use landau_solver::weakly::{Pattern, PlaneField};
 
@@ -48,7 +48,7 @@ pub fn pattern_pair(
     facts: &str,
     (shade, part): (&PlaneField, Part),
     arrows: Option<[&PlaneField; 2]>,
-) -> String {
+) -> Drawing {
     let vertical = structure.coordinate.clone().unwrap_or_default();
     let labels = [structure.periodic.clone(), vertical];
     type Chosen = fn(&PlaneField) -> &[Vec<f64>];
@@ -76,7 +76,7 @@ pub fn pattern_lines(
     found: &Pattern,
     facts: &str,
     part: Part,
-) -> Option<String> {
+) -> Option<Drawing> {
     let panel = |field: &PlaneField| {
         let name = part.name(&field.name);
         let mut panel = Panel::new(&name, &structure.periodic, &name);

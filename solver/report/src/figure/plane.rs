@@ -1,6 +1,6 @@
 //! Fields over the plane: shading for a scalar, arrows for a vector, equal aspect.
 
-use super::svg;
+use super::Drawing;
 use kuva::prelude::*;
 
 /// Levels of the shading.
@@ -32,8 +32,8 @@ pub struct Plane<'a> {
 }
 
 /// Planes side by side.
-pub fn planes(title: &str, planes: &[Plane]) -> String {
-    let (mut plots, mut layouts) = (Vec::new(), Vec::new());
+pub fn planes(title: &str, planes: &[Plane]) -> Drawing {
+    let (mut plots, mut layouts, mut says) = (Vec::new(), Vec::new(), Vec::new());
     let mut cell = [0.0_f64; 2];
     for plane in planes {
         let contents = plane.plots();
@@ -51,16 +51,27 @@ pub fn planes(title: &str, planes: &[Plane]) -> String {
         cell[1] = cell[1].max(unit * height + MARGIN[1]);
         plots.push(contents);
         layouts.push(layout);
+        says.push(plane.says());
     }
     let figure = Figure::new(1, planes.len())
         .with_title(title)
         .with_plots(plots)
         .with_layouts(layouts)
         .with_cell_size(cell[0], cell[1]);
-    svg(figure)
+    Drawing::new(figure, says.join("; ") + ".")
 }
 
 impl Plane<'_> {
+    fn says(&self) -> String {
+        let arrows = self.key.as_ref().map(|key| format!(", arrows: {key}"));
+        format!(
+            "{}: {}{}",
+            self.title,
+            self.shade.0,
+            arrows.unwrap_or_default()
+        )
+    }
+
     fn extent(&self) -> [f64; 2] {
         let length = |values: &[f64]| match values {
             [first, .., last] => last - first,

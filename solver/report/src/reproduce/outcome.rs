@@ -90,6 +90,8 @@ pub struct Table {
 pub struct Picture {
     /// What stands under it.
     pub caption: String,
+    /// What is seen, in a sentence.
+    pub says: String,
     /// The drawing.
     pub svg: String,
     /// Its data.

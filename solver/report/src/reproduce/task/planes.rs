@@ -90,13 +90,13 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
             .map(|[u, v]| Ok::<_, Error>([quantity(&found, u)?, quantity(&found, v)?]))
             .transpose()?;
         let facts = facts(case, k);
-        let svg = pattern_pair(structure, &found, &facts, (shade, Part::Total), arrows);
+        let drawing = pattern_pair(structure, &found, &facts, (shade, Part::Total), arrows);
         let parameters = &setup.base(None)?.parameters;
         let facts = attributes(&setup, parameters, k, Some(found.amplitude));
         let data = dataset(&setup, &found, facts);
-        Ok((svg, found.amplitude, data))
+        Ok((drawing.says.clone(), drawing.svg(), found.amplitude, data))
     })?;
-    for (index, (svg, amplitude, data)) in found {
+    for (index, (says, svg, amplitude, data)) in found {
         let case = &cases[index];
         let mut files = Vec::new();
         for extension in ["npz", "nc"] {
@@ -106,6 +106,7 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
         }
         outcome.pictures.push(Picture {
             caption: case.label.clone(),
+            says,
             svg,
             table: None,
             files,
