@@ -7,9 +7,8 @@
 mod derived;
 mod latex;
 mod terms;
-mod token;
 
-pub use token::symbols;
+pub use latex::symbols;
 
 use crate::derive::{Derivation, Form, Monomial};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, SourceFile};

@@ -208,10 +208,7 @@ fn derive(model: &dyn Model) -> Result<Derivation> {
 /// All sections of the derived operators in LaTeX, and printed formulas beside them.
 pub fn formulas(model: &dyn Model, errata: Option<&Errata>) -> Result<Formulas> {
     let mut derivation = derive(model)?;
-    let errata = match errata {
-        Some(errata) => errata.judge(&mut derivation, Arrangement::Grouped)?,
-        None => Vec::new(),
-    };
+    let judged = errata.map(|errata| errata.judge(&mut derivation, Arrangement::Grouped));
     let title = |section: &Section| match section {
         Section::Base => "Base state".to_owned(),
         Section::Linear => "Linear operator".to_owned(),
@@ -222,6 +219,8 @@ pub fn formulas(model: &dyn Model, errata: Option<&Errata>) -> Result<Formulas> 
     let sections = sections.map(|s| (title(&s), text::latex(&derivation, s)));
     Ok(Formulas {
         sections: sections.collect(),
-        errata,
+        source: errata.map_or(String::new(), |errata| errata.source.clone()),
+        errata: judged.transpose()?.unwrap_or_default(),
+        remarks: errata.map_or(Vec::new(), |errata| errata.remark.clone()),
     })
 }

@@ -4,7 +4,7 @@ use crate::arguments::{Common, PatternOptions};
 use crate::asked::asked;
 use landau_report::data::FORMATS;
 use landau_report::data::plane::{attributes, dataset};
-use landau_report::figure::{Drawing, Part, is_picture, pattern_lines, pattern_pair};
+use landau_report::figure::{Drawing, Part, View, is_picture, pattern_lines, pattern_pair};
 use landau_report::library::expression;
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{Expression, FieldId};
@@ -125,9 +125,14 @@ fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> 
         false => Part::Total,
     };
     let structure = setup.model.structure();
-    let facts = words::changed(setup, k);
+    let title = format!(
+        "{}, {}, A = {:.4}",
+        structure.title,
+        words::changed(setup, k),
+        found.amplitude
+    );
     if found.y.len() < 2 {
-        let drawn = pattern_lines(structure, found, &facts, part);
+        let drawn = pattern_lines(structure, found, &title, part);
         return drawn.ok_or_else(|| Error::computation("the pattern has no finite value"));
     }
     let first = &found.fields[FieldId(0)];
@@ -141,11 +146,12 @@ fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> 
         }
         None => None,
     };
-    Ok(pattern_pair(
-        structure,
-        found,
-        &facts,
-        (shade, part),
+    let view = View {
+        title,
+        shade,
+        part,
         arrows,
-    ))
+        written: &str::to_owned,
+    };
+    Ok(pattern_pair(structure, found, &view))
 }

@@ -3,7 +3,7 @@
 use crate::inspect;
 use crate::progress::Bar;
 use landau_report::library::Library;
-use landau_report::reproduce::{Errata, Study, Verdict, Workshop};
+use landau_report::reproduce::{Errata, Provenance, Study, Verdict, Workshop};
 use landau_solver::error::{Error, Result};
 use serde_json::json;
 use std::fs;
@@ -28,6 +28,8 @@ pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool
         study: &study,
         home,
         out: out.to_owned(),
+        kept: kept(out),
+        provenance: provenance(),
     };
     let found = shop.run(&formulas, &Bar::new("reproducing"))?;
     let page = out.join("index.html");
@@ -83,6 +85,27 @@ pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool
     }
 }
 
+/// The folder beside a report in which finished tasks are kept.
+fn kept(out: &Path) -> PathBuf {
+    let mut name = out.file_name().unwrap_or_default().to_owned();
+    name.push(".kept");
+    out.with_file_name(name)
+}
+
+/// The command, the time and the commit.
+fn provenance() -> Provenance {
+    let mut command: Vec<String> = std::env::args().collect();
+    if let Some(program) = command.first_mut() {
+        *program = "landau".to_owned();
+    }
+    let now = std::time::SystemTime::now();
+    Provenance {
+        command: command.join(" "),
+        date: humantime::format_rfc3339_seconds(now).to_string(),
+        commit: option_env!("LANDAU_COMMIT").map(str::to_owned),
+    }
+}
+
 /// The study that stands in a folder `studies` here or one level below.
 fn only_study() -> Result<PathBuf> {
     let entries = |folder: &Path| -> Vec<PathBuf> {
@@ -99,6 +122,14 @@ fn only_study() -> Result<PathBuf> {
     );
     let mut found: Vec<PathBuf> = folders.iter().flat_map(|folder| entries(folder)).collect();
     found.retain(|path| path.extension().is_some_and(|e| e == "toml"));
+    // Where there are several, one may say that it is the one.
+    if found.len() > 1 {
+        let default = |path: &PathBuf| Study::read(path).is_ok_and(|study| study.default);
+        let chosen: Vec<PathBuf> = found.iter().filter(|p| default(p)).cloned().collect();
+        if chosen.len() == 1 {
+            found = chosen;
+        }
+    }
     match found.len() {
         1 => Ok(found.swap_remove(0)),
         0 => Err(Error::input(

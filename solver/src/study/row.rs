@@ -16,6 +16,24 @@ pub const NUMBERS: [&str; 9] = [
     "second_harmonic",
 ];
 
+/// What a column of a sweep's table is.
+pub fn meaning(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "c0_re" => "growth rate, Re c0",
+        "c0_im" => "frequency, Im c0",
+        "c0_error" => "absolute error of c0, from a coarser collocation",
+        "c2_re" => "Re c2, the first Landau coefficient",
+        "c2_im" => "Im c2",
+        "c2_error" => "absolute error of c2",
+        "amplitude" => "equilibrium amplitude at cubic order, in the model's normalisation",
+        "bifurcation" => "supercritical, subcritical or degenerate; pitchfork or Hopf",
+        "mean_flow" => "distance of the problem for X[0;2] from singularity",
+        "second_harmonic" => "distance of the problem for X[2;2] from singularity",
+        "status" => "ok, or why there is no number, or what is near",
+        _ => return None,
+    })
+}
+
 /// Columns after the axes, as they stand in a table.
 pub(super) const COLUMNS: [&str; 11] = [
     NUMBERS[0],

@@ -1,5 +1,6 @@
 //! Arrays with their axes and what they were computed from, for other programs.
 
+pub mod csvw;
 mod netcdf;
 mod npz;
 pub mod plane;

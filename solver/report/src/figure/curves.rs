@@ -148,8 +148,11 @@ impl Panel {
                 *bounds = [bounds[0].min(value), bounds[1].max(value)];
             }
         }
-        if let Some(range) = self.range {
-            extent[0] = range;
+        if let Some([low, high]) = self.range {
+            // The name of a mark stands on its right.
+            let room = 0.06 * (high - low);
+            let named = self.marks.iter().any(|(place, _)| *place > high - room);
+            extent[0] = [low, if named { high + room } else { high }];
         }
         extent
     }

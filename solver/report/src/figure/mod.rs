@@ -11,7 +11,7 @@ mod ticks;
 pub use atlas::atlas;
 pub use curves::{Curve, Panel, Style, panels};
 pub use modes::{base, critical, modes, spectrum};
-pub use pattern::{Part, pattern_lines, pattern_pair};
+pub use pattern::{Part, View, pattern_lines, pattern_pair};
 pub use plane::{Plane, planes};
 
 use landau_solver::error::{Error, Result};

@@ -32,40 +32,47 @@ impl Part {
     }
 }
 
-/// The title of a picture: the model, and what it was drawn for.
-fn title(structure: &Structure, found: &Pattern, facts: &str) -> String {
-    let separator = if facts.is_empty() { "" } else { ", " };
-    format!(
-        "{}{separator}{facts}, A = {:.4}",
-        structure.title, found.amplitude
-    )
+/// What of a pattern is looked at, and how names are written.
+pub struct View<'a> {
+    /// What stands above the picture.
+    pub title: String,
+    /// The shaded quantity.
+    pub shade: &'a PlaneField,
+    /// What of it.
+    pub part: Part,
+    /// The two components of what arrows show.
+    pub arrows: Option<[&'a PlaneField; 2]>,
+    /// How a name is written.
+    pub written: &'a dyn Fn(&str) -> String,
 }
 
 /// Linear beside nonlinear.
-pub fn pattern_pair(
-    structure: &Structure,
-    found: &Pattern,
-    facts: &str,
-    (shade, part): (&PlaneField, Part),
-    arrows: Option<[&PlaneField; 2]>,
-) -> Drawing {
+pub fn pattern_pair(structure: &Structure, found: &Pattern, view: &View) -> Drawing {
+    let (part, written) = (view.part, view.written);
     let vertical = structure.coordinate.clone().unwrap_or_default();
-    let labels = [structure.periodic.clone(), vertical];
+    let labels = [written(&structure.periodic), written(&vertical)];
     type Chosen = fn(&PlaneField) -> &[Vec<f64>];
     let panel = |title: &str, of: Chosen| Plane {
         title: title.to_owned(),
         labels: labels.clone(),
         x: &found.x,
         y: &found.y,
-        shade: (part.name(&shade.name), part.of(of(shade), &shade.base)),
-        arrows: arrows.map(|pair| pair.map(|field| part.of(of(field), &field.base))),
-        key: arrows.map(|[along, across]| format!("({}, {})", along.name, across.name)),
+        shade: (
+            part.name(&written(&view.shade.name)),
+            part.of(of(view.shade), &view.shade.base),
+        ),
+        arrows: view
+            .arrows
+            .map(|pair| pair.map(|field| part.of(of(field), &field.base))),
+        key: view.arrows.map(|[along, across]| {
+            format!("({}, {})", written(&along.name), written(&across.name))
+        }),
     };
     planes(
-        &title(structure, found, facts),
+        &view.title,
         &[
-            panel("fundamental alone", |field| &field.linear),
-            panel("through third order", |field| &field.nonlinear),
+            panel("(a) fundamental alone", |field| &field.linear),
+            panel("(b) through third order", |field| &field.nonlinear),
         ],
     )
 }
@@ -74,7 +81,7 @@ pub fn pattern_pair(
 pub fn pattern_lines(
     structure: &Structure,
     found: &Pattern,
-    facts: &str,
+    title: &str,
     part: Part,
 ) -> Option<Drawing> {
     let panel = |field: &PlaneField| {
@@ -90,5 +97,5 @@ pub fn pattern_lines(
     };
     let all = found.fields.iter().chain(&found.derived);
     let drawn: Vec<Panel> = all.map(panel).collect();
-    panels(&title(structure, found, facts), &drawn)
+    panels(title, &drawn)
 }

@@ -44,6 +44,8 @@ pub fn planes(title: &str, planes: &[Plane]) -> Drawing {
             .with_subtitle(plane.subtitle())
             .with_show_grid(false)
             .with_clamp_axis()
+            .with_x_axis_min(plane.x[0])
+            .with_x_axis_max(plane.x[plane.x.len() - 1])
             .with_equal_aspect();
         let [width, height] = plane.extent();
         let unit = SIDE / width.max(height);
@@ -82,12 +84,13 @@ impl Plane<'_> {
 
     /// The key of the arrows: how long the longest stands for.
     fn subtitle(&self) -> String {
+        let shading = format!("shading: {}", self.shade.0);
         let (Some(key), Some([u, v])) = (&self.key, &self.arrows) else {
-            return String::new();
+            return shading;
         };
         let values = u.iter().flatten().zip(v.iter().flatten());
         let longest = values.map(|(u, v)| u.hypot(*v)).fold(0.0, f64::max);
-        format!("arrows: {key}, the longest {longest:.3}")
+        format!("{shading}; arrows: {key}, the longest {longest:.3}")
     }
 
     fn plots(&self) -> Vec<Plot> {

@@ -19,7 +19,7 @@ pub(super) fn logarithmic(smallest: f64, largest: f64) -> TickFormat {
     let decades = largest.log10().floor() - smallest.log10().ceil();
     match decades >= 1.0 {
         true => TickFormat::Custom(Arc::new(power_of_ten)),
-        false => TickFormat::Custom(Arc::new(decimal)),
+        false => linear(largest),
     }
 }
 

@@ -1,18 +1,19 @@
 //! A study file worked through: figures, numbers beside the printed ones, a report.
 //!
 //! `study` (the file) → `task` (what is computed) → `outcome` (pictures, tables, numbers) →
-//! `report` (HTML, JSON). A task that is finished is kept beside the report, so that an
+//! `page` (HTML), lists (JSON). A task that is finished is kept beside the report, so that an
 //! interrupted run goes on where it was.
 
 mod errata;
 mod outcome;
-mod report;
+mod page;
 mod study;
+mod symbols;
 mod task;
 
 pub use errata::{Errata, Judgement, Remark, all_explained};
 pub use outcome::{Claim, Number, Outcome, Picture, Table, Verdict};
-pub use report::Formulas;
+pub use page::{Formulas, Provenance};
 pub use study::Study;
 
 use crate::library::Library;
@@ -34,6 +35,10 @@ pub struct Workshop<'a> {
     pub home: PathBuf,
     /// Folder of the report.
     pub out: PathBuf,
+    /// Where finished tasks are kept: beside the report, not in it.
+    pub kept: PathBuf,
+    /// How the report is made.
+    pub provenance: Provenance,
 }
 
 impl Workshop<'_> {
@@ -43,9 +48,10 @@ impl Workshop<'_> {
     /// A folder that cannot be written, a model that does not exist. What merely does not come out stays in the
     /// report where its number would stand, with the reason.
     pub fn run(&self, formulas: &Formulas, progress: &dyn Progress) -> Result<Outcome> {
-        let kept = self.out.join("kept");
-        fs::create_dir_all(&kept)
-            .map_err(|e| Error::input(format!("{} cannot be made: {e}", kept.display())))?;
+        for folder in [&self.kept, &self.out.join("sources")] {
+            fs::create_dir_all(folder)
+                .map_err(|e| Error::input(format!("{} cannot be made: {e}", folder.display())))?;
+        }
         let tasks = self.study.figure.iter().map(|figure| figure.task.len());
         progress.begin(tasks.sum());
         let mut outcomes = Vec::new();
@@ -53,14 +59,14 @@ impl Workshop<'_> {
             let mut outcome = Outcome::default();
             for (index, task) in figure.task.iter().enumerate() {
                 let stem = format!("{}-{}", figure.id, index + 1);
-                let path = kept.join(format!("{stem}.json"));
+                let path = self.kept.join(format!("{stem}.json"));
                 outcome.add(self.task(&figure.id, &stem, task, &path)?);
                 progress.advance(1);
             }
             outcomes.push(outcome);
         }
         progress.end();
-        report::write(self, formulas, &outcomes)?;
+        page::write(self, formulas, &outcomes)?;
         let mut whole = Outcome::default();
         outcomes.into_iter().for_each(|outcome| whole.add(outcome));
         self.write_json("numbers.json", &whole.numbers)?;
@@ -105,6 +111,27 @@ impl Workshop<'_> {
             hashes.join(" "),
             self.study.resolution
         ))
+    }
+
+    /// A text as pictures have it: names of the study written as it says.
+    fn written(&self, text: &str) -> String {
+        symbols::written(text, &self.study.symbol)
+    }
+
+    /// Every file that the study was made from, by the name it is delivered under: the study, its formulas, the specs.
+    fn sources(&self) -> Result<Vec<(String, String)>> {
+        let mut files = self.study.files.clone();
+        let cases = self.study.figure.iter().flat_map(|figure| &figure.task);
+        for case in cases.flat_map(task::cases) {
+            for (path, text) in self.setup(case)?.model.sources() {
+                let name = Path::new(&path).file_name().unwrap_or_default();
+                let name = name.to_string_lossy().into_owned();
+                if !files.iter().any(|(known, _)| *known == name) {
+                    files.push((name, text));
+                }
+            }
+        }
+        Ok(files)
     }
 
     /// The model and parameters of a case.

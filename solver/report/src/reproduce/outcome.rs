@@ -1,6 +1,7 @@
 //! What a task of a study gives: pictures, tables, numbers, verdicts on statements.
 
-use super::study::{Case, Printed, named};
+use super::study::{Case, Printed, Study, named};
+use crate::data::csvw::{self, Datatype};
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// One number beside the printed one.
@@ -10,6 +11,15 @@ pub struct Number {
     pub figure: String,
     /// The case, and what it is.
     pub quantity: String,
+    /// The case alone.
+    #[serde(default)]
+    pub case: String,
+    /// What it is, alone.
+    #[serde(default)]
+    pub name: String,
+    /// The statement that it decides.
+    #[serde(default)]
+    pub decides: Option<String>,
     /// Nothing where it did not come out.
     pub ours: Option<f64>,
     /// Absolute error of ours.
@@ -31,6 +41,9 @@ impl Number {
         Number {
             figure: figure.to_owned(),
             quantity: label,
+            case: case.label.clone(),
+            name: quantity.to_owned(),
+            decides: None,
             ours: None,
             error: None,
             printed: printed.map(|p| p.value),
@@ -203,6 +216,29 @@ impl Table {
         }
     }
 
+    /// What its columns are, for the file beside its CSV.
+    pub fn metadata(&self, csv: &str, title: &str, study: &Study) -> String {
+        let numbers = self
+            .header
+            .iter()
+            .map(|name| (name.as_str(), Datatype::Number));
+        let words = self
+            .words
+            .iter()
+            .map(|(name, _)| (name.as_str(), Datatype::Text));
+        let columns: Vec<(&str, Datatype)> = numbers.chain(words).collect();
+        let facts = [
+            ("study", study.title.as_str()),
+            ("source", &study.source),
+            ("model", &study.model),
+            ("version", env!("CARGO_PKG_VERSION")),
+        ];
+        let facts = facts.map(|(name, value)| (name.to_owned(), value.into()));
+        let resolution = ("resolution".to_owned(), study.resolution.into());
+        let facts: Vec<_> = facts.into_iter().chain([resolution]).collect();
+        csvw::describe(csv, title, &columns, &facts)
+    }
+
     /// Comma-separated, empty where there is no value; words in quotation marks where they need them.
     pub fn csv(&self) -> String {
         let mut header = self.header.clone();
@@ -250,6 +286,9 @@ mod tests {
         let number = |ours: f64, printed: &str| Number {
             figure: String::new(),
             quantity: String::new(),
+            case: String::new(),
+            name: String::new(),
+            decides: None,
             ours: Some(ours),
             error: None,
             printed: printed.parse().ok(),

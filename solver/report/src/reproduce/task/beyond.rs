@@ -131,7 +131,7 @@ pub(super) fn orders(shop: &Workshop, cases: &[Case], asked: &Orders) -> Result<
     }
     let known = asked.reference.iter().map(|[k, a]| (*k, *a)).collect();
     panel.curve("fully nonlinear", Style::Dots, known);
-    picture(&mut outcome, "", &[panel], table);
+    picture(shop, &mut outcome, "", &[panel], table);
     Ok(outcome)
 }
 
@@ -245,11 +245,12 @@ pub(super) fn second_harmonic(shop: &Workshop, cases: &[Case], over: &Axis) -> R
         }
     }
     picture(
+        shop,
         &mut outcome,
         "coefficients through the resonance",
         &[coefficients],
         table,
     );
-    picture(&mut outcome, "equilibria of the pair", &sizes, states);
+    picture(shop, &mut outcome, "equilibria of the pair", &sizes, states);
     Ok(outcome)
 }

@@ -3,11 +3,14 @@
 use super::super::Workshop;
 use super::super::outcome::{Claim, Number, Outcome, Verdict};
 use super::super::study::{Case, Quantity, Statement, named};
+use super::curves::rows;
 use super::each;
+use super::planes::crest;
 use super::points::critical_point;
 use landau_solver::error::{Error, Result};
 use landau_solver::study::Setup;
 use landau_solver::study::point::PointReport;
+use landau_solver::study::row::{Column, column};
 use landau_solver::weakly::Selection;
 
 /// A number with its error.
@@ -24,6 +27,14 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
         let place = found.ok_or_else(missing)?;
         return Ok((place.value, place.error));
     }
+    let largest = match statement.quantity {
+        Quantity::LargestAmplitude => Some(Column::Amplitude),
+        Quantity::LargestGrowth => Some(Column::A0),
+        _ => None,
+    };
+    if let Some(quantity) = largest {
+        return where_largest(setup, case, statement, quantity);
+    }
     // The critical point may lie along k, or along a parameter.
     let (mut setup, mut k) = (setup.clone(), case.k);
     if let (Some(point), Some(asked)) = (&found, &statement.at) {
@@ -33,14 +44,20 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
         }
     }
     let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
-    let point = PointReport::compute(&setup, k.ok_or_else(missing)?, Selection::Leading, 3)?;
+    let k = k.ok_or_else(missing)?;
+    if statement.quantity == Quantity::A0 {
+        // Growth rates converge where c2 does not yet.
+        let row = rows(&setup, None, "k", vec![k], &[])?.remove(0);
+        let c0 = row.c0.ok_or_else(|| Error::computation(row.status))?;
+        return Ok((c0[0], row.c0_error.unwrap_or(f64::INFINITY)));
+    }
+    let point = PointReport::compute(&setup, k, Selection::Leading, 3)?;
     let amplitude_error = |a: f64| {
         // A² = −a0/a2
         let relative = point.error.c0 / point.c0.re.abs() + point.error.c2 / point.c2.re.abs();
         0.5 * a * relative
     };
     match statement.quantity {
-        Quantity::A0 => Ok((point.c0.re, point.error.c0)),
         Quantity::A2 => Ok((point.c2.re, point.error.c2)),
         Quantity::Amplitude => {
             let a = point
@@ -48,8 +65,38 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
                 .ok_or_else(|| Error::computation("there is no equilibrium at cubic order"))?;
             Ok((a, amplitude_error(a)))
         }
-        Quantity::Place => unreachable!("answered above"),
+        Quantity::Place | Quantity::A0 | Quantity::LargestAmplitude | Quantity::LargestGrowth => {
+            unreachable!("answered above")
+        }
     }
+}
+
+/// Where a quantity is largest along an axis, to half a step of it.
+fn where_largest(
+    setup: &Setup,
+    case: &Case,
+    statement: &Statement,
+    quantity: Column,
+) -> Result<Value> {
+    let missing = || Error::input("a statement about a largest value needs `over`: an axis");
+    let over = statement.over.as_ref().ok_or_else(missing)?;
+    let rows = rows(setup, case.k, &over.name, over.values(), &[])?;
+    let mut points = column(&rows, quantity);
+    points.retain(|p| p.1.is_finite());
+    let (places, values): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+    let inside = || {
+        Error::computation(format!(
+            "it is largest at an end of the range of {}",
+            over.name
+        ))
+    };
+    let [place, _] = crest(&values, &places).ok_or_else(inside)?;
+    let steps = over.values();
+    let step = steps
+        .windows(2)
+        .map(|w| (w[1] - w[0]).abs())
+        .fold(0.0, f64::max);
+    Ok((place, 0.5 * step))
 }
 
 /// Whether a value meets the statement; nothing where its error leaves that open.
@@ -63,6 +110,12 @@ fn meets(statement: &Statement, first: Option<Value>, (value, error): Value) -> 
     demands.extend(statement.below.map(|bound| beyond(bound - value)));
     if let (Some(share), Some((reference, _))) = (statement.as_first_within, first) {
         demands.push(beyond(share * reference.abs() - (value - reference).abs()));
+    }
+    // The first is the one that the others are apart from.
+    if let (Some(share), Some((reference, _))) = (statement.apart_from_first, first)
+        && value != reference
+    {
+        demands.push(beyond((value - reference).abs() - share * reference.abs()));
     }
     if demands.contains(&Some(false)) {
         return Some(false);
@@ -103,9 +156,10 @@ pub(super) fn claims(
             ));
             verdicts.push(verdict);
             let number = Number::new(figure, &cases[*index], &statement.name, label);
-            outcome
-                .numbers
-                .push(number.answered(value.0, Some(value.1)));
+            outcome.numbers.push(Number {
+                decides: Some(statement.says.clone()),
+                ..number.answered(value.0, Some(value.1))
+            });
         }
         let verdict = if verdicts.contains(&Some(false)) {
             Verdict::Fails
@@ -134,9 +188,11 @@ mod tests {
             name: String::new(),
             quantity: Quantity::A0,
             at: None,
+            over: None,
             above,
             below,
             as_first_within: within,
+            apart_from_first: None,
         }
     }
 

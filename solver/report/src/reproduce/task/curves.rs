@@ -2,20 +2,21 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Asked, Axis, Case, Drawn, named};
+use super::super::study::{Asked, Axis, Case, Drawn, Of, Together, named};
 use super::draw::picture;
 use super::each;
-use super::points::question;
+use super::points::{critical_point, question};
 use crate::figure::{Panel, Style};
 use crate::library::column as column_of;
 use landau_solver::error::{Error, Result};
-use landau_solver::study::critical;
+use landau_solver::study::critical::{self, Critical};
 use landau_solver::study::row::{Column, NUMBERS, Row, column};
 use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::{self, Setup, Silent};
+use rayon::prelude::*;
 
 /// Landau points of one case over an axis.
-fn rows(
+pub(super) fn rows(
     setup: &Setup,
     k: Option<f64>,
     name: &str,
@@ -41,18 +42,58 @@ fn rows(
     Ok(sweep.run(&Silent))
 }
 
+/// The critical points that are to be marked, of the first case.
+fn marked(shop: &Workshop, case: &Case, marks: &[Asked]) -> Result<Vec<(Asked, Critical)>> {
+    let setup = shop.setup(case)?;
+    let found = marks.par_iter().map(|asked| {
+        let point = critical_point(&setup, case, asked)?;
+        Ok((asked.clone(), point))
+    });
+    found.collect()
+}
+
+/// A curve that ends on the points where it vanishes, as A_e does on a bifurcation and on a resonance.
+fn ended(mut points: Vec<(f64, f64)>, ends: &[f64]) -> Vec<(f64, f64)> {
+    for &end in ends {
+        let at = points.partition_point(|p| p.0 < end);
+        let beside = |i: Option<usize>| {
+            i.and_then(|i| points.get(i))
+                .is_some_and(|p| p.1.is_finite())
+        };
+        // On the side that has an amplitude; a gap on the other.
+        match (beside(at.checked_sub(1)), beside(Some(at))) {
+            (true, false) => points.insert(at, (end, 0.0)),
+            (false, true) => points.insert(at, (end, 0.0)),
+            _ => {}
+        }
+    }
+    points
+}
+
 pub(super) fn sweep(
     shop: &Workshop,
     cases: &[Case],
     over: &Axis,
-    columns: &[Drawn],
+    columns: &[Together],
+    marks: &[Asked],
 ) -> Result<Outcome> {
-    let derived: Vec<String> = columns.iter().filter_map(Drawn::derived).collect();
+    let all = || columns.iter().flat_map(Together::drawn);
+    let derived: Vec<String> = all().filter_map(Drawn::derived).collect();
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
         rows(&setup, case.k, &over.name, over.values(), &derived)
     })?;
+    let marks = match marked(shop, &cases[0], marks) {
+        Ok(marks) => marks,
+        Err(Error::Input(message)) => return Err(Error::Input(message)),
+        Err(error) => {
+            outcome.failures.push(format!("marks: {error}"));
+            Vec::new()
+        }
+    };
+    let ends = marks.iter().filter(|(asked, _)| asked.of != Of::C2);
+    let ends: Vec<f64> = ends.map(|(_, point)| point.value).collect();
     let names = |column: &Drawn| -> (String, String) {
         let known = |title: &str, y: &str| (title.to_owned(), y.to_owned());
         match column {
@@ -60,16 +101,20 @@ pub(super) fn sweep(
             Drawn::Point(Column::A2) => known("first Landau coefficient", "a2"),
             Drawn::Point(Column::Amplitude) => known("equilibrium amplitude", "A_e"),
             Drawn::Point(Column::Threshold) => known("threshold amplitude", "A_e"),
-            Drawn::Derived(text) => known(text, text),
+            Drawn::Derived(text) => known("", text),
         }
     };
-    let mut drawn: Vec<Panel> = columns
-        .iter()
-        .map(|column| {
-            let (title, y) = names(column);
-            Panel::new(&title, &over.name, &y)
-        })
-        .collect();
+    let panel = |together: &Together| {
+        let (titles, ys): (Vec<String>, Vec<String>) = together.drawn().iter().map(names).unzip();
+        let mut panel = Panel::new(&titles.join(", "), &over.name, &ys.join(", "));
+        let marks = marks.iter();
+        panel.marks = marks
+            .map(|(asked, point)| (point.value, asked.name.clone()))
+            .collect();
+        panel.range = Some([over.from, over.to]);
+        panel
+    };
+    let mut drawn: Vec<Panel> = columns.iter().map(panel).collect();
     // The names of a sweep's own table.
     let header = ["case", &over.name].into_iter().chain(NUMBERS);
     let header: Vec<&str> = header.chain(derived.iter().map(String::as_str)).collect();
@@ -77,21 +122,37 @@ pub(super) fn sweep(
     let mut unconverged = 0;
     for (index, rows) in &found {
         let label = &cases[*index].label;
-        for (panel, quantity) in drawn.iter_mut().zip(columns) {
-            match quantity {
-                Drawn::Point(Column::A0) => {
-                    panel.curve(label, Style::Line, column(rows, Column::A0));
-                }
-                Drawn::Point(quantity) => {
-                    panel.curve_with_poles(label, Style::Line, column(rows, *quantity));
-                }
-                Drawn::Derived(text) => {
-                    let index = derived.iter().position(|d| d == text);
-                    let value = |row: &Row| index.and_then(|i| row.derived[i]);
-                    let points = rows
-                        .iter()
-                        .map(|row| (row.coordinates[0], value(row).unwrap_or(f64::NAN)));
-                    panel.curve(label, Style::Line, points.collect());
+        for (panel, together) in drawn.iter_mut().zip(columns) {
+            for quantity in together.drawn() {
+                // In a panel of several quantities, each by its name.
+                let label = match together.drawn() {
+                    [_] => label.clone(),
+                    _ => named(&cases[*index], &names(quantity).1),
+                };
+                match quantity {
+                    Drawn::Point(Column::A0) => {
+                        panel.curve(&label, Style::Line, column(rows, Column::A0));
+                    }
+                    Drawn::Point(Column::Amplitude) => {
+                        let points = column(rows, Column::Amplitude);
+                        let points = if *index == 0 {
+                            ended(points, &ends)
+                        } else {
+                            points
+                        };
+                        panel.curve_with_poles(&label, Style::Line, points);
+                    }
+                    Drawn::Point(quantity) => {
+                        panel.curve_with_poles(&label, Style::Line, column(rows, *quantity));
+                    }
+                    Drawn::Derived(text) => {
+                        let index = derived.iter().position(|d| d == text);
+                        let value = |row: &Row| index.and_then(|i| row.derived[i]);
+                        let points = rows
+                            .iter()
+                            .map(|row| (row.coordinates[0], value(row).unwrap_or(f64::NAN)));
+                        panel.curve(&label, Style::Line, points.collect());
+                    }
                 }
             }
         }
@@ -111,11 +172,17 @@ pub(super) fn sweep(
             format!("{count} points without a converged value are left out; the table says why.")
         }
     };
-    picture(&mut outcome, &caption, &drawn, table);
+    picture(shop, &mut outcome, &caption, &drawn, table);
     Ok(outcome)
 }
 
-pub(super) fn resonance(shop: &Workshop, cases: &[Case], over: &Axis) -> Result<Outcome> {
+pub(super) fn resonance(
+    shop: &Workshop,
+    figure: &str,
+    cases: &[Case],
+    over: &Axis,
+    marks: &[Asked],
+) -> Result<Outcome> {
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let (setup, values) = (shop.setup(case)?, over.values());
@@ -123,7 +190,19 @@ pub(super) fn resonance(shop: &Workshop, cases: &[Case], over: &Axis) -> Result<
         let one = rows(&setup, None, "k", values, &[])?;
         Ok((one, rows(&setup, None, "k", doubled, &[])?))
     })?;
-    let mut panel = Panel::new("2:1 resonance", "k", "growth rate");
+    let mut panel = Panel::new("2:1 resonance", "k", "a0");
+    for (asked, point) in marked(shop, &cases[0], marks)? {
+        panel.marks.push((point.value, asked.name.clone()));
+        let number = Number::new(
+            figure,
+            &cases[0],
+            &asked.name,
+            named(&cases[0], &asked.name),
+        );
+        outcome
+            .numbers
+            .push(number.answered(point.value, Some(point.error)));
+    }
     let mut table = Table::new(&["case", "k", "a0(k)", "a0(2k)/2"]).with_words(&["label"]);
     for (index, (one, two)) in &found {
         let label = &cases[*index].label;
@@ -138,7 +217,7 @@ pub(super) fn resonance(shop: &Workshop, cases: &[Case], over: &Axis) -> Result<
         panel.curve(&format!("{label} a0(k)"), Style::Line, first);
         panel.curve(&format!("{label} a0(2k)/2"), Style::Dashed, second);
     }
-    picture(&mut outcome, "", &[panel], table);
+    picture(shop, &mut outcome, "", &[panel], table);
     Ok(outcome)
 }
 
@@ -200,7 +279,7 @@ pub(super) fn power_law(
             outcome.numbers.push(number.answered(ours, None));
         }
     }
-    picture(&mut outcome, "", &[panel], table);
+    picture(shop, &mut outcome, "", &[panel], table);
     Ok(outcome)
 }
 

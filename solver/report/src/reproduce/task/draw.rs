@@ -1,11 +1,31 @@
 //! What the tasks draw: pictures with their tables.
 
+use super::super::Workshop;
 use super::super::outcome::{Outcome, Picture, Table};
 use crate::figure::{Panel, panels};
 
 /// Adds the panels with their table, where there is anything to draw.
-pub(super) fn picture(outcome: &mut Outcome, caption: &str, drawn: &[Panel], table: Table) {
-    if let Some(drawing) = panels("", drawn) {
+pub(super) fn picture(
+    shop: &Workshop,
+    outcome: &mut Outcome,
+    caption: &str,
+    drawn: &[Panel],
+    table: Table,
+) {
+    let written = |panel: &Panel| {
+        let mut panel = panel.clone();
+        for text in [&mut panel.title, &mut panel.x, &mut panel.y] {
+            *text = shop.written(text);
+        }
+        let labels = panel.curves.iter_mut().map(|curve| &mut curve.label);
+        let marks = panel.marks.iter_mut().map(|(_, name)| name);
+        labels
+            .chain(marks)
+            .for_each(|text| *text = shop.written(text));
+        panel
+    };
+    let drawn: Vec<Panel> = drawn.iter().map(written).collect();
+    if let Some(drawing) = panels("", &drawn) {
         outcome.pictures.push(Picture {
             caption: caption.to_owned(),
             says: drawing.says.clone(),

@@ -2,8 +2,10 @@
 
 mod beyond;
 mod claims;
+mod convergence;
 mod curves;
 mod draw;
+mod laws;
 mod planes;
 mod points;
 mod profiles;
@@ -28,7 +30,30 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             fields,
             logarithmic,
             tail,
-        } => profiles::profiles(shop, figure, case, fields, *logarithmic, tail.as_ref()),
+            panel,
+            mark,
+        } => {
+            let wanted = profiles::Wanted {
+                figure,
+                fields,
+                logarithmic: *logarithmic,
+                tail: tail.as_ref(),
+                panel: *panel,
+                marks: mark,
+            };
+            profiles::profiles(shop, case, &wanted)
+        }
+        Task::Law {
+            case,
+            expressions,
+            over,
+            at,
+        } => laws::law(shop, case, expressions, over, at),
+        Task::Convergence {
+            case,
+            over,
+            resolutions,
+        } => convergence::convergence(shop, figure, case, over, resolutions),
         Task::Spectrum {
             case,
             over,
@@ -38,8 +63,9 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             case,
             over,
             columns,
-        } => curves::sweep(shop, case, over, columns),
-        Task::Resonance { case, over } => curves::resonance(shop, case, over),
+            mark,
+        } => curves::sweep(shop, case, over, columns, mark),
+        Task::Resonance { case, over, mark } => curves::resonance(shop, figure, case, over, mark),
         Task::Orders {
             case,
             over,
@@ -104,6 +130,8 @@ pub(super) fn cases(task: &Task) -> &[Case] {
     match task {
         Task::Profiles { case, .. }
         | Task::Spectrum { case, .. }
+        | Task::Law { case, .. }
+        | Task::Convergence { case, .. }
         | Task::Sweep { case, .. }
         | Task::Resonance { case, .. }
         | Task::Orders { case, .. }

@@ -6,7 +6,7 @@ use super::super::study::{Axis, Case, named};
 use super::draw::picture;
 use super::each;
 use crate::data::plane::{attributes, dataset};
-use crate::figure::{Panel, Part, Style, pattern_pair};
+use crate::figure::{Panel, Part, Style, View, pattern_pair};
 use crate::library::expression;
 use landau_solver::error::{Error, Result};
 use landau_solver::model::Expression;
@@ -89,14 +89,27 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
             .arrows
             .map(|[u, v]| Ok::<_, Error>([quantity(&found, u)?, quantity(&found, v)?]))
             .transpose()?;
-        let facts = facts(case, k);
-        let drawing = pattern_pair(structure, &found, &facts, (shade, Part::Total), arrows);
+        let title = format!("{}, A_e = {:.4}", facts(case, k), found.amplitude);
+        let view = View {
+            title: shop.written(&title),
+            shade,
+            part: Part::Total,
+            arrows,
+            written: &|name| shop.written(name),
+        };
+        let drawing = pattern_pair(structure, &found, &view);
         let parameters = &setup.base(None)?.parameters;
         let facts = attributes(&setup, parameters, k, Some(found.amplitude));
         let data = dataset(&setup, &found, facts);
-        Ok((drawing.says.clone(), drawing.svg(), found.amplitude, data))
+        let seen = Seen {
+            amplitude: found.amplitude,
+            wavelength: 2.0 * std::f64::consts::PI / k,
+            height: peak(&largest(shade), &found.y),
+            least: [&shade.linear, &shade.nonlinear].map(least),
+        };
+        Ok((drawing, seen, data))
     })?;
-    for (index, (says, svg, amplitude, data)) in found {
+    for (index, (drawing, seen, data)) in found {
         let case = &cases[index];
         let mut files = Vec::new();
         for extension in ["npz", "nc"] {
@@ -106,15 +119,53 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
         }
         outcome.pictures.push(Picture {
             caption: case.label.clone(),
-            says,
-            svg,
+            says: drawing.says.clone(),
+            svg: drawing.svg(),
             table: None,
             files,
         });
-        let number = Number::new(wanted.figure, case, "A_e", named(case, "A_e"));
-        outcome.numbers.push(number.answered(amplitude, None));
+        let shade = wanted.shade;
+        for (quantity, value) in [
+            ("A_e".to_owned(), seen.amplitude),
+            ("wavelength".to_owned(), seen.wavelength),
+            (format!("height of the largest {shade}"), seen.height),
+            (
+                format!("smallest {shade}, fundamental alone"),
+                seen.least[0],
+            ),
+            (format!("smallest {shade}"), seen.least[1]),
+        ] {
+            let number = Number::new(wanted.figure, case, &quantity, named(case, &quantity));
+            outcome.numbers.push(number.answered(value, None));
+        }
     }
     Ok(outcome)
+}
+
+/// What is read off a pattern.
+struct Seen {
+    amplitude: f64,
+    wavelength: f64,
+    /// Where what is shaded is largest.
+    height: f64,
+    /// The smallest value of it, of the fundamental alone and through third order.
+    least: [f64; 2],
+}
+
+/// The largest value at each height.
+fn largest(field: &PlaneField) -> Vec<f64> {
+    let rows = field.nonlinear.iter();
+    rows.map(|row| row.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+        .collect()
+}
+
+/// The smallest value of all.
+fn least(values: &Vec<Vec<f64>>) -> f64 {
+    values
+        .iter()
+        .flatten()
+        .copied()
+        .fold(f64::INFINITY, f64::min)
 }
 
 /// What is measured of a vortex.
@@ -188,7 +239,7 @@ pub(super) fn circulation(
                 outcome.numbers.push(number.answered(ours, None));
             }
         }
-        picture(&mut outcome, &case.label, &[strength, height], table);
+        picture(shop, &mut outcome, &case.label, &[strength, height], table);
     }
     Ok(outcome)
 }
@@ -241,14 +292,10 @@ fn vortex(
         + integral(low, high, &|t| sample(v, right, t))
         - integral(left, right, &|t| sample(u, t, high))
         - integral(low, high, &|t| sample(v, left, t));
-    let rows = shade.nonlinear.iter();
-    let largest: Vec<f64> = rows
-        .map(|row| row.iter().copied().fold(f64::NEG_INFINITY, f64::max))
-        .collect();
     Ok(Vortex {
         circulation: circulation.abs(),
         centre: cy,
-        peak: peak(&largest, y),
+        peak: peak(&largest(shade), y),
     })
 }
 
@@ -284,7 +331,7 @@ fn rest(u: [f64; 4], v: [f64; 4]) -> [f64; 2] {
 
 /// Where evenly spaced values have a maximum between the ends, and its value: the crest of the
 /// parabola through three of them.
-fn crest(values: &[f64], places: &[f64]) -> Option<[f64; 2]> {
+pub(super) fn crest(values: &[f64], places: &[f64]) -> Option<[f64; 2]> {
     let highest = values.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
     let (j, &at) = highest.filter(|(j, _)| (1..values.len() - 1).contains(j))?;
     let (before, after) = (values[j - 1], values[j + 1]);

@@ -138,7 +138,7 @@ pub(super) fn critical(
                 drawn.push(waves);
             }
         }
-        picture(&mut outcome, "", &drawn, table);
+        picture(shop, &mut outcome, "", &drawn, table);
     }
     Ok(outcome)
 }

@@ -2,7 +2,7 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Axis, Case, Tail, named};
+use super::super::study::{Axis, Case, Mark, PanelOf, Tail, named};
 use super::draw::picture;
 use super::each;
 use crate::figure::{Panel, Style};
@@ -18,51 +18,67 @@ use landau_solver::study::quadrature::adjoint_mode;
 /// Points of a profile.
 const POINTS: usize = 401;
 
-pub(super) fn profiles(
-    shop: &Workshop,
-    figure: &str,
-    cases: &[Case],
-    fields: &[String],
-    logarithmic: bool,
-    tail: Option<&Tail>,
-) -> Result<Outcome> {
+/// What of base states is to be shown, and how.
+pub(super) struct Wanted<'a> {
+    pub figure: &'a str,
+    pub fields: &'a [String],
+    pub logarithmic: bool,
+    pub tail: Option<&'a Tail>,
+    pub panel: PanelOf,
+    pub marks: &'a [Mark],
+}
+
+pub(super) fn profiles(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<Outcome> {
+    let (figure, fields) = (wanted.figure, wanted.fields);
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
         let model = setup.model.as_ref();
         let base = setup.base(None)?;
         // A field is an expression too.
-        let wanted = fields.iter().map(|text| expression(model, text));
-        let wanted: Vec<Expression> = wanted.collect::<Result<_>>()?;
+        let expressions = fields.iter().map(|text| expression(model, text));
+        let expressions: Vec<Expression> = expressions.collect::<Result<_>>()?;
         let mut columns = vec![Vec::new(); fields.len() + 1];
         for place in base.space.evenly(POINTS) {
             let point = base.at(place, 0.0);
             columns[0].push(base.space.y(place));
-            for (column, expression) in columns[1..].iter_mut().zip(&wanted) {
+            for (column, expression) in columns[1..].iter_mut().zip(&expressions) {
                 column.push(expression.at_base(model.structure(), &point));
             }
         }
+        let tail = wanted.tail;
         let heights = tail.map(|tail| scale_heights(&setup, &base, &columns, tail));
         Ok((columns, heights.transpose()?))
     })?;
     let first = shop.setup(&cases[0])?;
     let vertical = first.model.structure().coordinate.clone();
     let vertical = vertical.unwrap_or_default();
-    let mut drawn: Vec<Panel> = fields
-        .iter()
-        .map(|name| {
-            let mut panel = Panel::new(&format!("base state: {name}"), &vertical, name);
-            panel.logarithmic[1] = logarithmic;
-            panel
-        })
-        .collect();
+    let panel = |title: &str, y: &str| {
+        let mut panel = Panel::new(title, &vertical, y);
+        panel.logarithmic[1] = wanted.logarithmic;
+        let marks = wanted.marks.iter();
+        panel.marks = marks.map(|mark| (mark.at, mark.name.clone())).collect();
+        panel
+    };
+    let mut drawn: Vec<Panel> = match wanted.panel {
+        PanelOf::Field => fields.iter().map(|name| panel("", name)).collect(),
+        PanelOf::Case => {
+            let title = |(index, _): &(usize, _)| panel(&cases[*index].label, &fields.join(", "));
+            found.iter().map(title).collect()
+        }
+    };
     let mut header = vec!["case", vertical.as_str()];
     header.extend(fields.iter().map(String::as_str));
     let mut table = Table::new(&header).with_words(&["label"]);
-    for (index, (columns, heights)) in found {
-        for (panel, values) in drawn.iter_mut().zip(&columns[1..]) {
+    for (position, (index, (columns, heights))) in found.into_iter().enumerate() {
+        for (field, values) in columns[1..].iter().enumerate() {
             let points = columns[0].iter().copied().zip(values.iter().copied());
-            panel.curve(&cases[index].label, Style::Line, points.collect());
+            let (panel, label, style) = match (wanted.panel, field) {
+                (PanelOf::Field, _) => (field, &cases[index].label, Style::Line),
+                (PanelOf::Case, 0) => (position, &fields[field], Style::Line),
+                (PanelOf::Case, _) => (position, &fields[field], Style::Dashed),
+            };
+            drawn[panel].curve(label, style, points.collect());
         }
         for i in 0..POINTS {
             let mut row = vec![(index + 1) as f64];
@@ -70,16 +86,20 @@ pub(super) fn profiles(
             table.push(row, &[&cases[index].label]);
         }
         if let Some((fitted, predicted)) = heights {
-            let quantity = "scale height of the tail, fitted";
-            let label = named(&cases[index], quantity);
-            let number = Number::new(figure, &cases[index], quantity, label);
-            outcome.numbers.push(Number {
-                note: predicted.map_or(String::new(), |h| format!("predicted: {h:.4}")),
-                ..number.answered(fitted, None)
-            });
+            let both = [
+                ("scale height of the tail, fitted", Some(fitted)),
+                ("predicted", predicted),
+            ];
+            for (quantity, value) in both {
+                let label = named(&cases[index], quantity);
+                let number = Number::new(figure, &cases[index], quantity, label);
+                outcome
+                    .numbers
+                    .extend(value.map(|value| number.answered(value, None)));
+            }
         }
     }
-    picture(&mut outcome, "", &drawn, table);
+    picture(shop, &mut outcome, "", &drawn, table);
     Ok(outcome)
 }
 
@@ -138,16 +158,20 @@ pub(super) fn spectrum(
         }
         Ok(rows)
     })?;
-    let mut panel = Panel::new("least stable mode", "k", "growth rate");
+    let panel = |case: &Case| Panel::new(&named(case, "least stable mode"), "k", "a0");
+    let mut drawn: Vec<Panel> = cases.iter().map(panel).collect();
     let mut table = Table::new(&["case", "k", "L", "L†", "difference"]).with_words(&["label"]);
-    let mut difference = Panel::new("L against L†", "k", "|difference|");
+    let mut difference = Panel::new("L against L†", "k", "|c0(L) − conj c0(L†)|");
     difference.logarithmic[1] = true;
     for (index, rows) in found {
         let label = &all[index].label;
         let of =
             |column: usize| -> Vec<(f64, f64)> { rows.iter().map(|r| (r[0], r[column])).collect() };
-        panel.curve(&format!("L, {label}"), Style::Line, of(1));
-        panel.curve(&format!("L†, {label}"), Style::Dots, of(2));
+        // Of one case after another, all resolutions.
+        let panel = &mut drawn[index / resolutions.len()];
+        let resolution = format!("M = {}", resolutions[index % resolutions.len()]);
+        panel.curve(&format!("L, {resolution}"), Style::Line, of(1));
+        panel.curve(&format!("L†, {resolution}"), Style::Dots, of(2));
         let quantity = format!("largest |L − L†| over {}", over.name);
         let number = Number::new(
             figure,
@@ -170,7 +194,8 @@ pub(super) fn spectrum(
             table.push(row, &[label]);
         }
     }
-    picture(&mut outcome, "", &[panel, difference], table);
+    drawn.push(difference);
+    picture(shop, &mut outcome, "", &drawn, table);
     Ok(outcome)
 }
 

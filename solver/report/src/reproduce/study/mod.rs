@@ -1,8 +1,14 @@
 //! A study file: which models, parameters and sweeps make which figure, and what was printed.
 
+mod axis;
+mod printed;
+
+pub use axis::{Axis, Spacing};
+pub use printed::Printed;
+
 use landau_solver::error::{Error, Result};
 use landau_solver::study::row::Column;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -16,6 +22,9 @@ pub struct Study {
     pub source: String,
     /// A built model, or a path relative to the study file.
     pub model: String,
+    /// Whether it is worked through where none of several is named.
+    #[serde(default)]
+    pub default: bool,
     /// M
     #[serde(default = "fifty")]
     pub resolution: usize,
@@ -24,12 +33,28 @@ pub struct Study {
     pub introduction: String,
     /// A file of printed formulas to compare with the derivation, relative to the study file.
     pub errata: Option<String>,
+    /// How names are written in pictures and on the page.
+    #[serde(default)]
+    pub symbol: BTreeMap<String, Symbol>,
     /// Its sections.
     pub figure: Vec<Figure>,
+    /// The file itself and what it names, by name and text.
+    #[serde(skip)]
+    pub files: Vec<(String, String)>,
 }
 
 fn fifty() -> usize {
     50
+}
+
+/// How a name is written.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Symbol {
+    /// In pictures.
+    pub text: String,
+    /// On the page, in LaTeX.
+    pub latex: String,
 }
 
 /// One section of the report.
@@ -63,62 +88,16 @@ pub struct Case {
     pub note: String,
 }
 
-/// A printed number with its digits: in the file a number, or a text where the last digits are zeros.
-#[derive(Clone, Debug, Serialize, PartialEq)]
-pub struct Printed {
-    pub value: f64,
-    pub text: String,
-}
-
-impl Printed {
-    /// The number that a text prints; NaN where it prints none.
-    pub fn of(text: &str) -> Self {
-        Printed {
-            value: text.trim().parse().unwrap_or(f64::NAN),
-            text: text.trim().to_owned(),
-        }
-    }
-
-    /// One in the last printed place.
-    pub fn last_digit(&self) -> f64 {
-        let (mantissa, exponent) = self
-            .text
-            .split_once(['e', 'E'])
-            .unwrap_or((&self.text, "0"));
-        let decimals = mantissa.split_once('.').map_or(0, |(_, d)| d.len() as i32);
-        10_f64.powi(exponent.parse::<i32>().unwrap_or(0) - decimals)
-    }
-}
-
-impl<'d> Deserialize<'d> for Printed {
-    fn deserialize<D: Deserializer<'d>>(input: D) -> std::result::Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum Written {
-            Number(f64),
-            Text(String),
-            Kept { text: String },
-        }
-        let printed = match Written::deserialize(input)? {
-            Written::Number(value) => Printed::of(&value.to_string()),
-            Written::Text(text) | Written::Kept { text, .. } => Printed::of(&text),
-        };
-        match printed.value.is_finite() {
-            true => Ok(printed),
-            false => Err(serde::de::Error::custom(format!(
-                "`{}` is no number; a printed value is a number, or a text with its digits such as \"0.1790\"",
-                printed.text
-            ))),
-        }
-    }
-}
-
 /// What decides a statement.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
     /// Where the critical point lies.
     Place,
+    /// Where A_e is largest over an axis.
+    LargestAmplitude,
+    /// Where a0 is largest over an axis.
+    LargestGrowth,
     A0,
     A2,
     /// A_e
@@ -135,10 +114,14 @@ pub struct Statement {
     pub quantity: Quantity,
     /// At a critical point; at the wavenumber of the case otherwise.
     pub at: Option<Asked>,
+    /// What a largest value is looked for over.
+    pub over: Option<Axis>,
     pub above: Option<f64>,
     pub below: Option<f64>,
     /// Within this part of the first case's value.
     pub as_first_within: Option<f64>,
+    /// Farther than this part of the first case's value from it.
+    pub apart_from_first: Option<f64>,
 }
 
 /// `label: quantity`
@@ -168,6 +151,42 @@ impl Drawn {
             Drawn::Derived(text) => Some(text.clone()),
         }
     }
+}
+
+/// Columns of one panel: one, or several that share their axes.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(untagged)]
+pub enum Together {
+    One(Drawn),
+    Several(Vec<Drawn>),
+}
+
+impl Together {
+    pub fn drawn(&self) -> &[Drawn] {
+        match self {
+            Together::One(drawn) => std::slice::from_ref(drawn),
+            Together::Several(drawn) => drawn,
+        }
+    }
+}
+
+/// What has a panel of its own.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum PanelOf {
+    /// A field: one curve a case.
+    #[default]
+    Field,
+    /// A case: one curve a field.
+    Case,
+}
+
+/// A place along x with a name.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Mark {
+    pub at: f64,
+    pub name: String,
 }
 
 /// A fit of exp(−y/h) to a part of a profile.
@@ -219,6 +238,25 @@ pub enum Task {
         logarithmic: bool,
         /// Of the first field.
         tail: Option<Tail>,
+        #[serde(default)]
+        panel: PanelOf,
+        #[serde(default)]
+        mark: Vec<Mark>,
+    },
+    /// Expressions in the state over the value of one field, the others held.
+    Law {
+        case: Vec<Case>,
+        expressions: Vec<String>,
+        over: Axis,
+        #[serde(default)]
+        at: BTreeMap<String, f64>,
+    },
+    /// a0 and a2 over k at several M, and how far each is from the finest.
+    Convergence {
+        case: Vec<Case>,
+        over: Axis,
+        /// The last is what the others are compared with.
+        resolutions: Vec<usize>,
     },
     /// Leading eigenvalue of L and of L† over k, at several resolutions.
     Spectrum {
@@ -230,10 +268,19 @@ pub enum Task {
     Sweep {
         case: Vec<Case>,
         over: Axis,
-        columns: Vec<Drawn>,
+        columns: Vec<Together>,
+        /// Critical points of the first case, drawn as verticals; an amplitude ends on them.
+        #[serde(default)]
+        mark: Vec<Asked>,
     },
     /// a0(k) beside a0(2k)/2: they meet at the 2:1 resonance.
-    Resonance { case: Vec<Case>, over: Axis },
+    Resonance {
+        case: Vec<Case>,
+        over: Axis,
+        /// As of a sweep.
+        #[serde(default)]
+        mark: Vec<Asked>,
+    },
     /// A_e over k at every order and of the Padé approximant.
     Orders {
         case: Vec<Case>,
@@ -297,6 +344,8 @@ impl Task {
             | Task::Resonance { over, .. }
             | Task::Orders { over, .. }
             | Task::SecondHarmonic { over, .. }
+            | Task::Convergence { over, .. }
+            | Task::Law { over, .. }
             | Task::Circulation { over, .. } => Some(over),
             Task::Critical { against, .. } => against.as_ref(),
             Task::Profiles { .. }
@@ -312,25 +361,6 @@ fn two() -> f64 {
     2.0
 }
 
-/// Evenly spaced values of k or of a parameter.
-#[derive(Clone, Debug, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
-pub struct Axis {
-    pub name: String,
-    pub from: f64,
-    pub to: f64,
-    pub count: usize,
-}
-
-impl Axis {
-    pub fn values(&self) -> Vec<f64> {
-        let steps = self.count - 1;
-        (0..=steps)
-            .map(|i| self.from + (self.to - self.from) * i as f64 / steps as f64)
-            .collect()
-    }
-}
-
 impl Study {
     /// Reads a study file.
     ///
@@ -339,8 +369,21 @@ impl Study {
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path)
             .map_err(|e| Error::input(format!("{} cannot be read: {e}", path.display())))?;
-        let study: Study =
+        let mut study: Study =
             toml::from_str(&text).map_err(|e| Error::input(format!("{}: {e}", path.display())))?;
+        let name = |path: &Path| {
+            path.file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned()
+        };
+        study.files.push((name(path), text));
+        if let Some(errata) = &study.errata {
+            let beside = path.parent().unwrap_or(Path::new("")).join(errata);
+            if let Ok(text) = std::fs::read_to_string(&beside) {
+                study.files.push((name(&beside), text));
+            }
+        }
         study
             .check()
             .map_err(|e| Error::input(format!("{}: {e}", path.display())))?;
@@ -359,6 +402,12 @@ impl Study {
             }
             known.push(&figure.id);
             for axis in figure.task.iter().filter_map(Task::axis) {
+                if axis.spacing == Spacing::Geometric && (axis.from <= 0.0 || axis.to <= 0.0) {
+                    return Err(Error::input(format!(
+                        "figure {}: `{}` by equal factors accepts numbers above zero",
+                        figure.id, axis.name
+                    )));
+                }
                 if axis.count < 2 {
                     return Err(Error::input(format!(
                         "figure {}: count = {} along `{}`: it accepts whole numbers from 2 on",

@@ -1,0 +1,80 @@
+//! What a table's columns are, in a file beside it: CSV on the Web (W3C 2015), `NAME.csv-metadata.json`.
+
+use landau_solver::study::row;
+use serde_json::{Value, json};
+
+/// The name of the description of a table.
+pub fn beside(csv: &str) -> String {
+    format!("{csv}-metadata.json")
+}
+
+/// What a column of a report's table or of a sweep is.
+fn meaning(name: &str) -> String {
+    if let Some(text) = row::meaning(name) {
+        return text.to_owned();
+    }
+    let text = match name {
+        "case" => "position of the case in the study, from 1",
+        "label" => "label of the case",
+        "question" => "position of the question in the task, from 1",
+        "value" => "where the critical point lies",
+        "error" => "absolute error of the value",
+        "M" => "highest degree of the Chebyshev polynomials",
+        "k" => "wavenumber",
+        "L" => "growth rate of the leading mode, by L",
+        "L†" => "the same by the continuous adjoint",
+        "difference" => "modulus of the difference of the two eigenvalues",
+        "a0" => "growth rate, Re c0",
+        "a2" => "Re c2",
+        "A_e" => "equilibrium amplitude",
+        "circulation" => "circulation around the square",
+        name => name,
+    };
+    text.to_owned()
+}
+
+/// The description of a table: its title, its columns in order (those of words named), and facts about the whole.
+pub fn describe(
+    csv: &str,
+    title: &str,
+    columns: &[(&str, Datatype)],
+    facts: &[(String, Value)],
+) -> String {
+    let column = |(name, datatype): &(&str, Datatype)| {
+        json!({
+            "titles": name,
+            "dc:description": meaning(name),
+            "datatype": datatype.name(),
+            "null": "",
+        })
+    };
+    let mut table = json!({
+        "@context": "http://www.w3.org/ns/csvw",
+        "url": csv,
+        "dc:title": title,
+        "dialect": { "header": true },
+        "tableSchema": { "columns": columns.iter().map(column).collect::<Vec<Value>>() },
+    });
+    for (name, value) in facts {
+        table[format!("landau:{name}")] = value.clone();
+    }
+    format!("{table:#}\n")
+}
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Datatype {
+    /// Floating-point numbers.
+    Number,
+    /// Words.
+    Text,
+}
+
+impl Datatype {
+    fn name(self) -> &'static str {
+        match self {
+            Datatype::Number => "double",
+            Datatype::Text => "string",
+        }
+    }
+}
