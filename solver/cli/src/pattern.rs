@@ -9,7 +9,7 @@ use landau_report::library::expression;
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{Expression, FieldId};
 use landau_solver::study::{Setup, check_wavenumber};
-use landau_solver::weakly::{Pattern, Window, pattern as expand};
+use landau_solver::weakly::{Pattern, PlaneField, Window, pattern as expand};
 use landau_solver::words;
 use serde_json::json;
 
@@ -46,12 +46,16 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
     };
     let expressions = shaded(setup, options)?;
     let found = expand(&point, amplitude, window, &expressions)?;
+    let vector = options.arrows.as_deref().map(components).transpose()?;
     let attributes = attributes(setup, &state.parameters, k, Some(amplitude));
+    for name in vector.iter().flatten() {
+        named(&found, name)?;
+    }
     for path in &options.out {
         if is_picture(path) {
             picture(setup, options, k, &found)?.write(path)?;
         } else {
-            dataset(setup, &found, attributes.clone()).write(path)?;
+            dataset(setup, &found, attributes.clone(), vector).write(path)?;
         }
     }
     if common.json {
@@ -102,6 +106,25 @@ fn window(options: &PatternOptions) -> Result<Window> {
     })
 }
 
+/// A quantity of the pattern by its name.
+fn named<'p>(found: &'p Pattern, name: &str) -> Result<&'p PlaneField> {
+    found.quantity(name.trim()).ok_or_else(|| {
+        let names: Vec<&str> = found.fields.iter().map(|f| f.name.as_str()).collect();
+        Error::input(format!(
+            "there is no field `{name}`: the profiles are {}",
+            names.join(", ")
+        ))
+    })
+}
+
+/// The two fields of `--arrows`.
+fn components(text: &str) -> Result<[&str; 2]> {
+    let (along, across) = text
+        .split_once(',')
+        .ok_or_else(|| Error::input(format!("--arrows {text}: it accepts FIELD,FIELD")))?;
+    Ok([along.trim(), across.trim()])
+}
+
 /// What is shaded, where it is no field: compiled.
 fn shaded(setup: &Setup, options: &PatternOptions) -> Result<Vec<Expression>> {
     let model = setup.model.as_ref();
@@ -111,15 +134,7 @@ fn shaded(setup: &Setup, options: &PatternOptions) -> Result<Vec<Expression>> {
 }
 
 fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> Result<Drawing> {
-    let field = |name: &str| {
-        found.quantity(name.trim()).ok_or_else(|| {
-            let names: Vec<&str> = found.fields.iter().map(|f| f.name.as_str()).collect();
-            Error::input(format!(
-                "there is no field `{name}`: the profiles are {}",
-                names.join(", ")
-            ))
-        })
-    };
+    let field = |name: &str| named(found, name);
     let part = match options.perturbation {
         true => Part::Perturbation,
         false => Part::Total,
@@ -139,9 +154,7 @@ fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> 
     let shade = options.shade.as_deref().map_or(Ok(first), field)?;
     let arrows = match &options.arrows {
         Some(text) => {
-            let (along, across) = text
-                .split_once(',')
-                .ok_or_else(|| Error::input(format!("--arrows {text}: it accepts FIELD,FIELD")))?;
+            let [along, across] = components(text)?;
             Some([field(along)?, field(across)?])
         }
         None => None,

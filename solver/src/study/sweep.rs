@@ -310,7 +310,8 @@ impl Sweep<'_> {
         Ok((row, pair))
     }
 
-    pub(super) fn header(&self) -> impl Iterator<Item = &str> {
+    /// Names of the columns: the axes, those of every row, derived ones.
+    pub fn header(&self) -> impl Iterator<Item = &str> {
         let axes = self.ranges.iter().map(|r| r.name.as_str());
         let derived = self.derived.iter().map(|column| column.name.as_str());
         axes.chain(COLUMNS).chain(derived)

@@ -1,6 +1,7 @@
 //! What a table's columns are, in a file beside it: CSV on the Web (W3C 2015), `NAME.csv-metadata.json`.
 
 use landau_solver::study::row;
+use landau_solver::study::sweep::Sweep;
 use serde_json::{Value, json};
 
 /// The name of the description of a table.
@@ -59,6 +60,36 @@ pub fn describe(
         table[format!("landau:{name}")] = value.clone();
     }
     format!("{table:#}\n")
+}
+
+/// The description of a sweep's table: its axes, columns, and what the numbers were computed from.
+pub fn describe_sweep(csv: &str, sweep: &Sweep) -> String {
+    let setup = sweep.setup;
+    let structure = setup.model.structure();
+    let columns: Vec<(&str, Datatype)> = sweep
+        .header()
+        .map(|name| match name {
+            "bifurcation" | "status" => (name, Datatype::Text),
+            name => (name, Datatype::Number),
+        })
+        .collect();
+    let parameters: Vec<String> = structure
+        .parameters
+        .pairs()
+        .filter(|(_, info)| sweep.ranges.iter().all(|range| range.name != info.name))
+        .map(|(id, info)| format!("{}={}", info.name, setup.parameters.shown(structure, id)))
+        .collect();
+    let text = |name: &str, text: &str| (name.to_owned(), Value::from(text));
+    let mut facts = vec![
+        text("model", &structure.name),
+        text("model_hash", &setup.hash()),
+        text("parameters", &parameters.join(" ")),
+        text("normalization", &structure.amplitude.description),
+        text("version", env!("CARGO_PKG_VERSION")),
+        ("resolution".to_owned(), setup.resolution.into()),
+    ];
+    facts.extend(sweep.k.map(|k| ("k".to_owned(), k.into())));
+    describe(csv, &structure.title, &columns, &facts)
 }
 
 /// What a column holds.

@@ -10,10 +10,34 @@ use landau_solver::error::{Error, Result};
 use landau_solver::file::write_whole;
 use std::path::Path;
 
+/// What is said of a dataset or of an array.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fact {
+    /// In words.
+    Text(String),
+    /// A number, as a number.
+    Number(f64),
+}
+
+/// Facts by name.
+pub type Facts = Vec<(String, Fact)>;
+
+/// An axis.
+pub struct Axis {
+    /// As it is declared.
+    pub name: String,
+    /// What it is, in words.
+    pub long_name: String,
+    /// In ascending order.
+    pub values: Vec<f64>,
+}
+
 /// A labelled array over some of the axes, the last varying fastest.
 pub struct Array {
     /// As it is declared.
     pub name: String,
+    /// What it is, in words.
+    pub long_name: String,
     /// Positions of its axes, the last varying fastest.
     pub axes: Vec<usize>,
     /// Its numbers.
@@ -22,13 +46,21 @@ pub struct Array {
 
 /// Axes, arrays over them, and attributes.
 pub struct Dataset {
-    /// Name and text.
-    pub attributes: Vec<(String, String)>,
-    /// Positions of its axes, the last varying fastest.
-    pub axes: Vec<(String, Vec<f64>)>,
+    /// Of the whole.
+    pub attributes: Facts,
+    /// The axes, the last varying fastest.
+    pub axes: Vec<Axis>,
     /// What there is.
     pub arrays: Vec<Array>,
+    /// Vectors: a name, and the names of the components along x and y.
+    pub vectors: Vec<(String, [String; 2])>,
 }
+
+/// The conventions that attributes follow.
+pub const CONVENTIONS: &str = "CF-1.8";
+
+/// Units of every number: models are dimensionless, or in units that their specs say.
+pub const UNITS: &str = "1";
 
 /// File formats by extension.
 pub const FORMATS: [&str; 3] = ["npz", "nc", "vtk"];

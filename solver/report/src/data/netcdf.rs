@@ -1,6 +1,6 @@
 //! NetCDF-3 with CF-like coordinates, as xarray reads it.
 
-use super::Dataset;
+use super::{CONVENTIONS, Dataset, Fact, UNITS};
 use netcdf3::{DataSet, FileWriter, Version};
 use std::io::{Read, Seek, SeekFrom};
 
@@ -8,17 +8,35 @@ pub(super) fn encode(data: &Dataset) -> Result<Vec<u8>, String> {
     let text = |e: &dyn std::fmt::Debug| format!("{e:?}");
     let mut set = DataSet::new();
     for (name, value) in &data.attributes {
-        set.add_global_attr_string(name, value)
-            .map_err(|e| text(&e))?;
+        let added = match value {
+            Fact::Text(value) => set.add_global_attr_string(name, value),
+            Fact::Number(value) => set.add_global_attr_f64(name, vec![*value]),
+        };
+        added.map_err(|e| text(&e))?;
     }
-    for (name, values) in &data.axes {
-        set.add_fixed_dim(name, values.len())
-            .map_err(|e| text(&e))?;
-        set.add_var_f64(name, &[name]).map_err(|e| text(&e))?;
+    let conventions = set.add_global_attr_string("Conventions", CONVENTIONS);
+    conventions.map_err(|e| text(&e))?;
+    for axis in &data.axes {
+        let added = set.add_fixed_dim(&axis.name, axis.values.len());
+        added.map_err(|e| text(&e))?;
+        let added = set.add_var_f64(&axis.name, &[&axis.name]);
+        added.map_err(|e| text(&e))?;
     }
     for array in &data.arrays {
-        let axes: Vec<&String> = array.axes.iter().map(|&axis| &data.axes[axis].0).collect();
-        set.add_var_f64(&array.name, &axes).map_err(|e| text(&e))?;
+        let axes = array.axes.iter().map(|&axis| &data.axes[axis].name);
+        let added = set.add_var_f64(&array.name, &axes.collect::<Vec<_>>());
+        added.map_err(|e| text(&e))?;
+    }
+    let axes = data.axes.iter().map(|axis| (&axis.name, &axis.long_name));
+    for (name, long) in axes.chain(
+        data.arrays
+            .iter()
+            .map(|array| (&array.name, &array.long_name)),
+    ) {
+        for (fact, value) in [("units", UNITS), ("long_name", long)] {
+            let added = set.add_var_attr_string(name, fact, value);
+            added.map_err(|e| text(&e))?;
+        }
     }
     // The writer wants a file of its own.
     let mut file = tempfile::tempfile().map_err(|e| e.to_string())?;
@@ -28,8 +46,10 @@ pub(super) fn encode(data: &Dataset) -> Result<Vec<u8>, String> {
     writer
         .set_def(&set, Version::Classic, 0)
         .map_err(|e| text(&e))?;
-    for (name, values) in &data.axes {
-        writer.write_var_f64(name, values).map_err(|e| text(&e))?;
+    for axis in &data.axes {
+        writer
+            .write_var_f64(&axis.name, &axis.values)
+            .map_err(|e| text(&e))?;
     }
     for array in &data.arrays {
         writer

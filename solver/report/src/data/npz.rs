@@ -1,6 +1,6 @@
 //! npz: one npy file an axis and an array; attributes as JSON text in the bytes of `attributes`.
 
-use super::Dataset;
+use super::{Dataset, Fact};
 use npyz::WriterBuilder;
 use std::io::{Cursor, Write};
 use zip::write::{SimpleFileOptions, ZipWriter};
@@ -17,21 +17,27 @@ pub(super) fn encode(data: &Dataset) -> Result<Vec<u8>, String> {
             .map_err(|e| e.to_string())?;
         archive.write_all(&bytes).map_err(|e| e.to_string())
     };
-    for (name, values) in &data.axes {
-        add(name, npy(&[values.len() as u64], values)?)?;
+    for axis in &data.axes {
+        add(&axis.name, npy(&[axis.values.len() as u64], &axis.values)?)?;
     }
     for array in &data.arrays {
         let shape: Vec<u64> = array
             .axes
             .iter()
-            .map(|&axis| data.axes[axis].1.len() as u64)
+            .map(|&axis| data.axes[axis].values.len() as u64)
             .collect();
         add(&array.name, npy(&shape, &array.values)?)?;
     }
     let attributes: serde_json::Map<String, serde_json::Value> = data
         .attributes
         .iter()
-        .map(|(name, value)| (name.clone(), value.clone().into()))
+        .map(|(name, value)| {
+            let value = match value {
+                Fact::Text(text) => text.clone().into(),
+                Fact::Number(number) => (*number).into(),
+            };
+            (name.clone(), value)
+        })
         .collect();
     let text = serde_json::to_string(&attributes).map_err(|e| e.to_string())?;
     add("attributes", npy(&[text.len() as u64], text.as_bytes())?)?;

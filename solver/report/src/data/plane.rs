@@ -1,7 +1,7 @@
 //! A pattern as arrays over (y, x), with what it was computed from.
 
-use super::{Array, Dataset};
-use landau_solver::model::C64;
+use super::{Array, Axis, Dataset, Fact, Facts};
+use landau_solver::model::{C64, Structure};
 use landau_solver::parameters::Parameters;
 use landau_solver::study::Setup;
 use landau_solver::study::modes::Modes;
@@ -10,39 +10,50 @@ use landau_solver::weakly::Pattern;
 /// Real or imaginary part.
 type Side = fn(&C64) -> f64;
 
-/// What the numbers were computed from.
-pub fn attributes(
-    setup: &Setup,
-    parameters: &Parameters,
-    k: f64,
-    amplitude: Option<f64>,
-) -> Vec<(String, String)> {
+/// What the numbers were computed from: parameters by name, a switch by its choice.
+pub fn attributes(setup: &Setup, parameters: &Parameters, k: f64, amplitude: Option<f64>) -> Facts {
     let structure = setup.model.structure();
+    let text = |name: &str, value: &str| (name.to_owned(), Fact::Text(value.to_owned()));
+    let number = |name: &str, value: f64| (name.to_owned(), Fact::Number(value));
     let mut list = vec![
-        ("title".to_owned(), structure.title.clone()),
-        ("model".to_owned(), structure.name.clone()),
-        ("model_hash".to_owned(), setup.hash()),
+        text("title", &structure.title),
+        text("source", &format!("Landau {}", env!("CARGO_PKG_VERSION"))),
+        text("model", &structure.name),
+        text("model_hash", &setup.hash()),
+        number("k", k),
+        number("resolution", setup.resolution as f64),
+        text("normalization", &structure.amplitude.description),
+        text("landau_version", env!("CARGO_PKG_VERSION")),
     ];
+    list.extend(amplitude.map(|amplitude| number("amplitude", amplitude)));
     let parameter = structure.parameters.pairs();
     let values: Vec<String> = parameter
         .map(|(id, info)| format!("{}={}", info.name, parameters.shown(structure, id)))
         .collect();
-    list.push(("parameters".to_owned(), values.join(" ")));
-    list.push(("k".to_owned(), k.to_string()));
-    if let Some(amplitude) = amplitude {
-        list.push(("amplitude".to_owned(), amplitude.to_string()));
+    list.push(text("parameters", &values.join(" ")));
+    for (id, info) in structure.parameters.pairs() {
+        let name = format!("parameter_{}", info.name);
+        list.push(match info.choices.is_empty() {
+            true => number(&name, parameters.values[id]),
+            false => text(&name, &parameters.shown(structure, id)),
+        });
     }
-    list.push(("resolution".to_owned(), setup.resolution.to_string()));
-    let normalisation = structure.amplitude.description.clone();
-    list.push(("normalization".to_owned(), normalisation));
-    let version = env!("CARGO_PKG_VERSION").to_owned();
-    list.push(("landau_version".to_owned(), version));
     list
 }
 
+/// A field in words, by the spec's own where it has some.
+fn words(structure: &Structure, name: &str) -> String {
+    let doc = structure
+        .field(name)
+        .map(|id| structure.fields[id].doc.clone());
+    doc.filter(|doc| !doc.is_empty())
+        .unwrap_or_else(|| name.to_owned())
+}
+
 /// Real and imaginary part of every mode over the cross-stream coordinate.
-pub fn modes(setup: &Setup, found: &Modes, attributes: Vec<(String, String)>) -> Dataset {
-    let vertical = setup.model.structure().coordinate.as_deref().unwrap_or("y");
+pub fn modes(setup: &Setup, found: &Modes, attributes: Facts) -> Dataset {
+    let structure = setup.model.structure();
+    let vertical = structure.coordinate.as_deref().unwrap_or("y");
     let mut arrays = Vec::new();
     for profile in &found.profiles {
         let name = match profile.name.as_str() {
@@ -54,6 +65,7 @@ pub fn modes(setup: &Setup, found: &Modes, attributes: Vec<(String, String)>) ->
             for (side, of) in sides {
                 arrays.push(Array {
                     name: format!("{name}_{part}_{side}"),
+                    long_name: format!("{} of {}, {side}", words(structure, part), profile.name),
                     axes: vec![0],
                     values: values.iter().map(of).collect(),
                 });
@@ -62,8 +74,13 @@ pub fn modes(setup: &Setup, found: &Modes, attributes: Vec<(String, String)>) ->
     }
     Dataset {
         attributes,
-        axes: vec![(vertical.to_owned(), found.heights.clone())],
+        axes: vec![Axis {
+            name: vertical.to_owned(),
+            long_name: "cross-stream coordinate".to_owned(),
+            values: found.heights.clone(),
+        }],
         arrays,
+        vectors: Vec::new(),
     }
 }
 
@@ -73,26 +90,34 @@ fn plain(name: &str) -> String {
     name.chars().filter(kept).collect()
 }
 
-/// X⁰, P (4.5) and P (4.4) of every field over (y, x).
-pub fn dataset(setup: &Setup, found: &Pattern, attributes: Vec<(String, String)>) -> Dataset {
+/// X⁰, P (4.5) and P (4.4) of every field over (y, x); `vector` names the two fields that are one.
+pub fn dataset(
+    setup: &Setup,
+    found: &Pattern,
+    attributes: Facts,
+    vector: Option<[&str; 2]>,
+) -> Dataset {
     let structure = setup.model.structure();
     let vertical = structure.coordinate.as_deref().unwrap_or("y");
     let mut arrays = Vec::new();
     for field in found.fields.iter().chain(&found.derived) {
         let name = plain(&field.name);
         let flat = |values: &[Vec<f64>]| values.iter().flatten().copied().collect();
-        for (kind, values) in [
-            ("linear", flat(&field.linear)),
-            ("nonlinear", flat(&field.nonlinear)),
+        let said = words(structure, &field.name);
+        for (kind, what, values) in [
+            ("linear", "base and fundamental", flat(&field.linear)),
+            ("nonlinear", "through third order", flat(&field.nonlinear)),
         ] {
             arrays.push(Array {
                 name: format!("{name}_{kind}"),
+                long_name: format!("{said}, {what}"),
                 axes: vec![0, 1],
                 values,
             });
         }
         arrays.push(Array {
             name: format!("{name}_base"),
+            long_name: format!("{said}, base state"),
             axes: vec![0],
             values: field.base.clone(),
         });
@@ -100,9 +125,27 @@ pub fn dataset(setup: &Setup, found: &Pattern, attributes: Vec<(String, String)>
     Dataset {
         attributes,
         axes: vec![
-            (vertical.to_owned(), found.y.clone()),
-            (structure.periodic.clone(), found.x.clone()),
+            Axis {
+                name: vertical.to_owned(),
+                long_name: "cross-stream coordinate".to_owned(),
+                values: found.y.clone(),
+            },
+            Axis {
+                name: structure.periodic.clone(),
+                long_name: "periodic coordinate".to_owned(),
+                values: found.x.clone(),
+            },
         ],
         arrays,
+        vectors: vector.map_or(Vec::new(), vectors),
     }
+}
+
+/// The vector of two fields, linear and nonlinear.
+fn vectors(fields: [&str; 2]) -> Vec<(String, [String; 2])> {
+    let of = |kind: &str| {
+        let components = fields.map(|field| format!("{}_{kind}", plain(field)));
+        (format!("vector_{kind}"), components)
+    };
+    vec![of("linear"), of("nonlinear")]
 }

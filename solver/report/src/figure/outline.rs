@@ -9,7 +9,7 @@ const PARTS: f64 = 50.0;
 type Corner = (i64, i64);
 
 /// Parts of a pixel by which a line may be straightened.
-const TOLERANCE: f64 = 0.15 * PARTS;
+const TOLERANCE: f64 = 0.2 * PARTS;
 
 /// The same scene with abutting polygons merged, pieces of a line joined, and what is drawn alike one after another
 /// drawn at once.

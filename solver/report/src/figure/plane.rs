@@ -4,7 +4,7 @@ use super::Drawing;
 use kuva::prelude::*;
 
 /// Levels of the shading.
-const LEVELS: usize = 18;
+const LEVELS: usize = 16;
 /// Points of the shading along either axis; data beside the picture may be finer.
 const SHADED: usize = 90;
 /// Arrows along the longer side of a picture.

@@ -98,7 +98,7 @@ fn article(judgement: &Judgement) -> Result<Markup> {
                 @else { strong.fails { (differing) " of " (judgement.terms) " terms differ" } } }
             (sides(judgement)?)
             @for [letter, meaning] in &judgement.meanings {
-                p.note { "where " (inline(letter)) " is " (inline(&shown(meaning, judgement, |s| &s.printed))) }
+                p.note.slips { "where " (inline(letter)) " is " (inline(&shown(meaning, judgement, |s| &s.printed))) }
             }
             @if !judgement.slips.is_empty() { ul { @for slip in &judgement.slips { (erratum(slip, judgement)) } } }
             @if let Some(open) = &judgement.unexplained { p.failure { "Not explained: " (open) } }
@@ -116,8 +116,9 @@ fn sides(judgement: &Judgement) -> Result<Markup> {
         judgement,
         &shown(&judgement.printed, judgement, |s| &s.printed),
     ))?;
-    if judgement.slips.is_empty() {
-        return Ok(printed);
+    // Slips may be in what letters stand for alone.
+    if judgement.mended == judgement.printed {
+        return Ok(html! { div.slips { (printed) } });
     }
     let mended = displayed(&named(
         judgement,

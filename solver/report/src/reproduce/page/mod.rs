@@ -9,6 +9,7 @@ pub use formulas::Formulas;
 use super::Workshop;
 use super::outcome::{Outcome, Picture};
 use super::study::Figure;
+use crate::data::csvw;
 use landau_solver::error::Result;
 use landau_solver::file::write_whole;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -118,7 +119,7 @@ fn drawn(shop: &Workshop, figure: &Figure, number: usize, picture: &Picture) -> 
     if let Some(table) = &picture.table {
         let csv = format!("{stem}.csv");
         write_whole(&shop.out.join(&csv), table.csv().as_bytes())?;
-        let described = format!("{csv}-metadata.json");
+        let described = csvw::beside(&csv);
         let about = format!("{} {}", heading(figure), figure.title);
         write_whole(
             &shop.out.join(&described),

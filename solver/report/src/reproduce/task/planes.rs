@@ -100,12 +100,13 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
         let drawing = pattern_pair(structure, &found, &view);
         let parameters = &setup.base(None)?.parameters;
         let facts = attributes(&setup, parameters, k, Some(found.amplitude));
-        let data = dataset(&setup, &found, facts);
+        let vector = wanted.arrows.map(|[u, v]| [u.as_str(), v.as_str()]);
+        let data = dataset(&setup, &found, facts, vector);
         let seen = Seen {
             amplitude: found.amplitude,
             wavelength: 2.0 * std::f64::consts::PI / k,
             height: peak(&largest(shade), &found.y),
-            least: [&shade.linear, &shade.nonlinear].map(least),
+            least: [&shade.linear, &shade.nonlinear].map(|values| least(values)),
         };
         Ok((drawing, seen, data))
     })?;
@@ -160,7 +161,7 @@ fn largest(field: &PlaneField) -> Vec<f64> {
 }
 
 /// The smallest value of all.
-fn least(values: &Vec<Vec<f64>>) -> f64 {
+fn least(values: &[Vec<f64>]) -> f64 {
     values
         .iter()
         .flatten()
