@@ -2,6 +2,7 @@
 
 mod amplitudes;
 mod architecture;
+mod browser;
 mod command_line;
 mod coverage;
 mod defects;
