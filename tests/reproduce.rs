@@ -440,3 +440,38 @@ fn the_page_about_studies_holds_one() {
         );
     }
 }
+
+/// The second study: onsets to all printed digits; the coefficient of Schlüter, Lortz & Busse (1965) to the fourth decimal,
+/// and the Nusselt number of Clever & Busse (1974) to what third order leaves of it.
+#[test]
+fn another_paper_is_reproduced_without_rust() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().join("report");
+    let study = crate::support::root().join("spec/studies/schlueter1965.toml");
+    let paths = [&study, &out].map(|p| p.to_str().expect("a path"));
+    run(&["reproduce", paths[0], "--out", paths[1]]);
+    let text = fs::read_to_string(out.join("numbers.json")).expect("numbers");
+    let numbers: Vec<Value> = serde_json::from_str(&text).expect("JSON");
+    let mut compared = 0;
+    for number in numbers.iter().filter(|n| n["printed"].is_number()) {
+        let [ours, printed] =
+            ["ours", "printed"].map(|key| number[key].as_f64().expect("a number"));
+        let allowed = match number["name"].as_str().expect("a name") {
+            "Ra_c" => 5e-4,
+            "k of Ra_c" => 1e-3,
+            "flux" => 3e-4,
+            "nusselt" => 4e-3,
+            name => panic!("{name}"),
+        };
+        close(&number["quantity"].to_string(), ours, printed, allowed);
+        compared += 1;
+    }
+    assert_eq!(compared, 10);
+    for file in [
+        "sources/rolls.model",
+        "sources/schlueter1965.toml",
+        "figureheat-1.csv-metadata.json",
+    ] {
+        assert!(out.join(file).is_file(), "{file}");
+    }
+}

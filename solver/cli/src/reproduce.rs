@@ -3,7 +3,7 @@
 use crate::inspect;
 use crate::progress::Bar;
 use landau_report::library::Library;
-use landau_report::reproduce::{Errata, Provenance, Study, Verdict, Workshop};
+use landau_report::reproduce::{Errata, Provenance, Study, Verdict, Workshop, beside};
 use landau_solver::error::{Error, Result};
 use serde_json::json;
 use std::fs;
@@ -21,7 +21,7 @@ pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool
         .as_ref()
         .map(|file| Errata::read(&home.join(file)));
     let errata = errata.transpose()?;
-    let model = library.model(&study.model)?;
+    let model = library.model(&beside(&home, &study.model))?;
     let formulas = inspect::formulas(model.as_ref(), errata.as_ref())?;
     let shop = Workshop {
         library,

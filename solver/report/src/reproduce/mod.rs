@@ -137,14 +137,19 @@ impl Workshop<'_> {
     /// The model and parameters of a case.
     fn setup(&self, case: &Case) -> Result<Setup> {
         let name = case.model.as_ref().unwrap_or(&self.study.model);
-        let beside = self.home.join(name);
-        let name = match beside.to_str() {
-            Some(path) if beside.is_file() => path,
-            _ => name,
-        };
         let resolution = case.resolution.unwrap_or(self.study.resolution);
-        let mut setup = Setup::new(self.library.model(name)?, resolution);
+        let model = self.library.model(&beside(&self.home, name))?;
+        let mut setup = Setup::new(model, resolution);
         setup.set(&case.set)?;
         Ok(setup)
+    }
+}
+
+/// A model as a study names it: a file beside the study where there is one, a built model otherwise.
+pub fn beside(home: &Path, name: &str) -> String {
+    let file = home.join(name);
+    match file.to_str() {
+        Some(path) if file.is_file() => path.to_owned(),
+        _ => name.to_owned(),
     }
 }

@@ -5,6 +5,9 @@ use super::super::symbols::Symbols;
 use super::text::rich;
 use maud::{Markup, html};
 
+/// Rows of a table that is shown at once.
+const LONG: usize = 12;
+
 /// Distinct values in the order in which they come.
 fn distinct<'n>(list: &[&'n Number], of: fn(&Number) -> &str) -> Vec<&'n str> {
     let mut known: Vec<&str> = Vec::new();
@@ -29,7 +32,14 @@ pub(super) fn numbers(list: &[Number], symbols: &Symbols) -> Markup {
             None => tables.push((cases, own)),
         }
     }
-    html! { @for (cases, numbers) in &tables { (table(cases, numbers, symbols)) } }
+    html! {
+        @for (cases, numbers) in &tables {
+            // The points of a curve are drawn; who wants them in digits opens them.
+            @if cases.len() > LONG {
+                details { summary { (cases.len()) " rows" } (table(cases, numbers, symbols)) }
+            } @else { (table(cases, numbers, symbols)) }
+        }
+    }
 }
 
 fn table(cases: &[&str], numbers: &[&Number], symbols: &Symbols) -> Markup {

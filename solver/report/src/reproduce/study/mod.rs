@@ -181,6 +181,22 @@ pub enum PanelOf {
     Case,
 }
 
+/// A curve of somebody else's.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reference {
+    /// A CSV of two columns of numbers, with a header, relative to the study file.
+    pub file: String,
+    pub label: String,
+    /// The panel that it belongs to, from 1.
+    #[serde(default = "one")]
+    pub panel: usize,
+}
+
+fn one() -> usize {
+    1
+}
+
 /// A place along x with a name.
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
@@ -272,6 +288,12 @@ pub enum Task {
         /// Critical points of the first case, drawn as verticals; an amplitude ends on them.
         #[serde(default)]
         mark: Vec<Asked>,
+        /// Whether each axis is.
+        #[serde(default)]
+        logarithmic: [bool; 2],
+        /// What others have, drawn as points.
+        #[serde(default)]
+        reference: Vec<Reference>,
     },
     /// a0(k) beside a0(2k)/2: they meet at the 2:1 resonance.
     Resonance {
@@ -304,8 +326,12 @@ pub enum Task {
         case: Vec<Case>,
         claim: Vec<Statement>,
     },
-    /// A_e at single places.
-    Values { case: Vec<Case> },
+    /// a0, a2, A_e and derived columns at single places.
+    Values {
+        case: Vec<Case>,
+        #[serde(default)]
+        columns: Vec<String>,
+    },
     /// A_e against the distance from a critical point, and the fitted exponent.
     PowerLaw {
         case: Vec<Case>,

@@ -130,7 +130,9 @@ pub(super) fn orders(shop: &Workshop, cases: &[Case], asked: &Orders) -> Result<
         }
     }
     let known = asked.reference.iter().map(|[k, a]| (*k, *a)).collect();
-    panel.curve("fully nonlinear", Style::Dots, known);
+    if !asked.reference.is_empty() {
+        panel.curve("fully nonlinear", Style::Dots, known);
+    }
     picture(shop, &mut outcome, "", &[panel], table);
     Ok(outcome)
 }

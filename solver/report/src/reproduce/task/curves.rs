@@ -2,7 +2,7 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Asked, Axis, Case, Drawn, Of, Together, named};
+use super::super::study::{Asked, Axis, Case, Drawn, Of, Reference, Together, named};
 use super::draw::picture;
 use super::each;
 use super::points::{critical_point, question};
@@ -70,13 +70,45 @@ fn ended(mut points: Vec<(f64, f64)>, ends: &[f64]) -> Vec<(f64, f64)> {
     points
 }
 
-pub(super) fn sweep(
-    shop: &Workshop,
-    cases: &[Case],
-    over: &Axis,
-    columns: &[Together],
-    marks: &[Asked],
-) -> Result<Outcome> {
+/// What of a sweep is to be shown, and how.
+pub(super) struct Wanted<'a> {
+    pub over: &'a Axis,
+    pub columns: &'a [Together],
+    pub marks: &'a [Asked],
+    pub logarithmic: [bool; 2],
+    pub reference: &'a [Reference],
+}
+
+/// The points of somebody else's curve.
+fn reference(shop: &Workshop, asked: &Reference) -> Result<Vec<(f64, f64)>> {
+    let path = shop.home.join(&asked.file);
+    let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
+    let text =
+        std::fs::read_to_string(&path).map_err(|e| wrong(format!("it cannot be read: {e}")))?;
+    let point = |(index, line): (usize, &str)| {
+        let mut cells = line.split(',').map(|cell| cell.trim().parse::<f64>());
+        match (cells.next(), cells.next(), cells.next()) {
+            (Some(Ok(x)), Some(Ok(y)), None) => Ok((x, y)),
+            _ => Err(wrong(format!(
+                "line {} is not two numbers with a comma between",
+                index + 1
+            ))),
+        }
+    };
+    let lines = text.lines().enumerate().skip(1);
+    lines
+        .filter(|(_, line)| !line.trim().is_empty())
+        .map(point)
+        .collect()
+}
+
+pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<Outcome> {
+    let Wanted {
+        over,
+        columns,
+        marks,
+        ..
+    } = *wanted;
     let all = || columns.iter().flat_map(Together::drawn);
     let derived: Vec<String> = all().filter_map(Drawn::derived).collect();
     let mut outcome = Outcome::default();
@@ -112,6 +144,7 @@ pub(super) fn sweep(
             .map(|(asked, point)| (point.value, asked.name.clone()))
             .collect();
         panel.range = Some([over.from, over.to]);
+        panel.logarithmic = wanted.logarithmic;
         panel
     };
     let mut drawn: Vec<Panel> = columns.iter().map(panel).collect();
@@ -165,6 +198,20 @@ pub(super) fn sweep(
             table.push(numbers.collect(), &[label, &row.bifurcation, &row.status]);
             unconverged += usize::from(row.c2.is_none());
         }
+    }
+    for asked in wanted.reference {
+        let points = reference(shop, asked)?;
+        let count = drawn.len();
+        let panel = asked.panel.checked_sub(1).and_then(|i| drawn.get_mut(i));
+        let none = || {
+            Error::input(format!(
+                "reference {}: panel = {} of {count}",
+                asked.file, asked.panel
+            ))
+        };
+        panel
+            .ok_or_else(none)?
+            .curve(&asked.label, Style::Dots, points);
     }
     let caption = match unconverged {
         0 => String::new(),

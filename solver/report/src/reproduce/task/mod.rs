@@ -64,7 +64,18 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             over,
             columns,
             mark,
-        } => curves::sweep(shop, case, over, columns, mark),
+            logarithmic,
+            reference,
+        } => {
+            let wanted = curves::Wanted {
+                over,
+                columns,
+                marks: mark,
+                logarithmic: *logarithmic,
+                reference,
+            };
+            curves::sweep(shop, case, &wanted)
+        }
         Task::Resonance { case, over, mark } => curves::resonance(shop, figure, case, over, mark),
         Task::Orders {
             case,
@@ -92,7 +103,7 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             against,
         } => points::critical(shop, figure, case, asked, against.as_ref()),
         Task::Claims { case, claim } => claims::claims(shop, figure, case, claim),
-        Task::Values { case } => points::values(shop, figure, case),
+        Task::Values { case, columns } => points::values(shop, figure, case, columns),
         Task::PowerLaw {
             case,
             critical,
@@ -138,7 +149,7 @@ pub(super) fn cases(task: &Task) -> &[Case] {
         | Task::SecondHarmonic { case, .. }
         | Task::Critical { case, .. }
         | Task::Claims { case, .. }
-        | Task::Values { case }
+        | Task::Values { case, .. }
         | Task::PowerLaw { case, .. }
         | Task::Pattern { case, .. }
         | Task::Circulation { case, .. } => case,

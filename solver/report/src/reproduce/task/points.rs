@@ -3,6 +3,7 @@
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Asked, Axis, Case, Of, named};
+use super::curves::rows;
 use super::draw::picture;
 use super::{Named, each};
 use crate::figure::{Panel, Style};
@@ -62,8 +63,14 @@ fn along(cases: &[Case], against: Option<&Axis>) -> Vec<(Case, Option<f64>)> {
     for case in cases {
         for value in axis.values() {
             let mut case = case.clone();
-            case.label = named(&case, &format!("{} = {value}", axis.name));
-            case.set.push(format!("{}={value}", axis.name));
+            // Without the last digits of a step.
+            let shown = format!("{value:.10}");
+            let shown = shown.trim_end_matches('0').trim_end_matches('.');
+            case.label = named(&case, &format!("{} = {shown}", axis.name));
+            match axis.name.as_str() {
+                "k" => case.k = Some(value),
+                name => case.set.push(format!("{name}={value}")),
+            }
             moved.push((case, Some(value)));
         }
     }
@@ -111,6 +118,12 @@ pub(super) fn critical(
             Some((_, point)) => {
                 let row = vec![*place, position, point.value, point.error, point.k];
                 table.push(row, &[label, "ok"]);
+                // Where it is an extremum, the wavenumber is an answer too.
+                if asked[*question].minimize.is_some() {
+                    let name = format!("k of {}", asked[*question].name);
+                    let of = Number::new(figure, case, &name, named(case, &name));
+                    outcome.numbers.push(of.answered(point.k, None));
+                }
                 number.answered(point.value, Some(point.error))
             }
             None => {
@@ -143,8 +156,13 @@ pub(super) fn critical(
     Ok(outcome)
 }
 
-/// a0, a2 and A_e of each case.
-pub(super) fn values(shop: &Workshop, figure: &str, cases: &[Case]) -> Result<Outcome> {
+/// a0, a2, A_e and derived columns of each case.
+pub(super) fn values(
+    shop: &Workshop,
+    figure: &str,
+    cases: &[Case],
+    columns: &[String],
+) -> Result<Outcome> {
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
@@ -152,18 +170,28 @@ pub(super) fn values(shop: &Workshop, figure: &str, cases: &[Case]) -> Result<Ou
         let setup = shop.setup(case)?;
         let point = setup.point(&setup.base(None)?, k, Selection::Leading)?;
         let error = accuracy(&setup, &point)?;
-        let values = [Some(point.c0.re), Some(point.c2.re), point.amplitude()];
-        Ok((values, [Some(error.c0), Some(error.c2), None]))
+        let mut values = vec![
+            (Some(point.c0.re), Some(error.c0)),
+            (Some(point.c2.re), Some(error.c2)),
+            (point.amplitude(), None),
+        ];
+        if !columns.is_empty() {
+            let row = rows(&setup, None, "k", vec![k], columns)?.remove(0);
+            values.extend(row.derived.into_iter().map(|value| (value, None)));
+        }
+        Ok(values)
     })?;
     let mut found = found.into_iter().peekable();
     for (index, case) in cases.iter().enumerate() {
         let own = found.next_if(|(found, _)| *found == index);
-        for (position, quantity) in ["a0", "a2", "A_e"].into_iter().enumerate() {
+        let quantities = ["a0", "a2", "A_e"].into_iter();
+        let quantities = quantities.chain(columns.iter().map(String::as_str));
+        for (position, quantity) in quantities.enumerate() {
             let number = Number::new(figure, case, quantity, named(case, quantity));
             outcome.numbers.push(match &own {
-                Some((_, (values, errors))) => match values[position] {
-                    Some(value) => number.answered(value, errors[position]),
-                    None => number.failed("no equilibrium at cubic order"),
+                Some((_, values)) => match values[position] {
+                    (Some(value), error) => number.answered(value, error),
+                    (None, _) => number.failed("no equilibrium at cubic order"),
                 },
                 None => number.failed(&outcome.reason(&case.label)),
             });
