@@ -104,6 +104,7 @@ pub(super) fn critical(
     let mut table =
         Table::new(&[first, "question", "value", "error", "k"]).with_words(&["label", "status"]);
     let mut found = found.into_iter().peekable();
+    let mut extrema = Vec::new();
     for (index, inquiry) in inquiries.iter().enumerate() {
         let Inquiry {
             case,
@@ -122,7 +123,7 @@ pub(super) fn critical(
                 if asked[*question].minimize.is_some() {
                     let name = format!("k of {}", asked[*question].name);
                     let of = Number::new(figure, case, &name, named(case, &name));
-                    outcome.numbers.push(of.answered(point.k, None));
+                    extrema.push(of.answered(point.k, None));
                 }
                 number.answered(point.value, Some(point.error))
             }
@@ -135,6 +136,7 @@ pub(super) fn critical(
         };
         outcome.numbers.push(number);
     }
+    outcome.numbers.extend(extrema);
     if let Some(axis) = against {
         let mut drawn = Vec::new();
         for (position, asked) in asked.iter().enumerate() {
