@@ -2,6 +2,7 @@
 
 use crate::model::Core;
 use crate::watch::watched;
+use landau_report::library::column;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::write_whole;
 use landau_solver::model::C64;
@@ -72,12 +73,13 @@ fn profiles(setup: &Setup, points: usize) -> Result<Value> {
 }
 
 /// A sweep over axes that are checked.
-fn swept(
-    setup: &Setup,
+fn swept<'s>(
+    setup: &'s Setup,
     axes: Vec<(String, Vec<f64>)>,
     k: Option<f64>,
     near: Near,
-) -> Result<Sweep<'_>> {
+    columns: &[String],
+) -> Result<Sweep<'s>> {
     let mut ranges = Vec::new();
     for (name, values) in axes {
         let axis = Axis::named(setup.model.as_ref(), &name)?;
@@ -100,7 +102,10 @@ fn swept(
         ranges,
         near: near.map(|(re, im)| C64::new(re, im)),
         k,
-        derived: Vec::new(),
+        derived: columns
+            .iter()
+            .map(|text| column(setup.model.as_ref(), text))
+            .collect::<Result<_>>()?,
     })
 }
 
@@ -116,6 +121,7 @@ fn row(row: &Row) -> Value {
         "mean_flow": row.mean_flow,
         "second_harmonic": row.second_harmonic,
         "status": row.status,
+        "derived": row.derived,
     })
 }
 
@@ -280,11 +286,12 @@ impl Core {
         axes: Vec<(String, Vec<f64>)>,
         k: Option<f64>,
         near: Near,
+        columns: Vec<String>,
         out: Option<String>,
     ) -> PyResult<String> {
         watched(py, |watch| {
             let setup = setup(self, &set, resolution)?;
-            let sweep = swept(&setup, axes, k, near)?;
+            let sweep = swept(&setup, axes, k, near, &columns)?;
             let rows = match out {
                 Some(path) => {
                     sweep.check_output(Path::new(&path))?;
@@ -306,13 +313,14 @@ impl Core {
         axes: Vec<(String, Vec<f64>)>,
         k: Option<f64>,
         near: Near,
+        columns: Vec<String>,
         share: (usize, usize),
         out: String,
     ) -> PyResult<()> {
         watched(py, |watch| {
             let setup = setup(self, &set, resolution)?;
             let share = Share::parse(&format!("{}/{}", share.0, share.1))?;
-            swept(&setup, axes, k, near)?.run_share(share, Path::new(&out), watch, |_| {})
+            swept(&setup, axes, k, near, &columns)?.run_share(share, Path::new(&out), watch, |_| {})
         })
     }
 

@@ -69,6 +69,13 @@ def test_sweeps(tmp_path):
     assert dataset.attrs["model"] == "swift_hohenberg"
     assert float(dataset.c2_re.sel(r=0.2).isel(k=1)) == sweep.c2[1, 1].real
     assert len(sweep.plot()) == 3
+    rolls = Model("rayleigh_benard").sweep(Ra=[1800.0, 2000.0], k=3.117, columns=["nusselt", "integral(theta)"])
+    # Clever & Busse (1974) at Pr = 0.71: 1.212; at Pr = 1 alike.
+    assert rolls.derived["nusselt"][1] == pytest.approx(1.212, abs=5e-3)
+    assert np.all(rolls.derived["integral(theta)"] == 0)
+    assert rolls.to_xarray().nusselt.shape == (2,)
+    with pytest.raises(InputError, match="nuselt"):
+        Model("rayleigh_benard").sweep(Ra=[1800.0], k=3.117, columns=["nuselt"])
     out = tmp_path / "sweep.csv"
     model.sweep(k=[0.9, 1.0], r=0.1, out=out)
     assert out.read_text().startswith("k,c0_re")
@@ -189,7 +196,7 @@ def test_a_share_that_was_killed_is_computed_again(tmp_path):
 
     bed = Model("vibrated_bed")
     axes = [("k", list(np.linspace(0.05, 0.17, 200)))]
-    assignment = (["H=40.0"], 40, axes, None, None)
+    assignment = (["H=40.0"], 40, axes, None, None, [])
     file = tmp_path / "assignment"
     file.write_bytes(pickles.dumps((bed, assignment)))
     plain = tmp_path / "plain.csv"

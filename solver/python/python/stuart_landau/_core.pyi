@@ -40,6 +40,7 @@ class Core:
         axes: list[tuple[str, list[float]]],
         k: float | None,
         near: Near,
+        columns: list[str],
         out: str | None,
     ) -> str: ...
     def sweep_share(
@@ -49,6 +50,7 @@ class Core:
         axes: list[tuple[str, list[float]]],
         k: float | None,
         near: Near,
+        columns: list[str],
         share: tuple[int, int],
         out: str,
     ) -> None: ...

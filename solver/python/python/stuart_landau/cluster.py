@@ -27,15 +27,19 @@ def run(client: Any, model: Any, assignment: tuple[Any, ...], out: Path, tasks: 
         job.program(
             [sys.executable, "-m", "stuart_landau.cluster", str(file), str(index), str(tasks), str(shard)],
             env={"RAYON_NUM_THREADS": str(cpus)},
+            cwd=str(out.parent),
+            stdout=None,
+            stderr=str(shard) + ".err",
             resources=ResourceRequest(cpus=cpus),
         )
     client.wait_for_jobs([client.submit(job)])
     Core.merge([str(shard) for shard in shards], str(out))
-    for leftover in (file, *shards):
-        leftover.unlink()
+    said = [shard.with_name(shard.name + ".err") for shard in shards]
+    for leftover in (file, *shards, *said):
+        leftover.unlink(missing_ok=True)
 
 
-def rows(table: Path, axes: int) -> list[dict[str, Any]]:
+def rows(table: Path, axes: int, columns: list[str]) -> list[dict[str, Any]]:
     """The rows of a sweep's table."""
 
     def number(text: str) -> float | None:
@@ -53,6 +57,7 @@ def rows(table: Path, axes: int) -> list[dict[str, Any]]:
             **{name: number(row[name]) for name in plain},
             "bifurcation": row["bifurcation"],
             "status": row["status"],
+            "derived": [number(row[name]) for name in columns],
         }
 
     with table.open(newline="") as file:

@@ -188,6 +188,7 @@ class Model:
         k: float | Sequence[float] | None = None,
         near: complex | None = None,
         M: int = 50,
+        columns: Sequence[str] = (),
         cluster: Any = None,
         tasks: int = 16,
         cpus: int = 1,
@@ -198,6 +199,7 @@ class Model:
 
         With `out`, a CSV file, an interrupted sweep leaves a journal beside it and goes on from there. With `cluster`, a
         `hyperqueue.Client`, the sweep runs there in `tasks` shares of `cpus` cores, through files beside `out`.
+        `columns` are outputs at the equilibrium, and expressions in the base state: `"T at upper"`, `"integral(n)"`.
         """
         every = {**(set or {}), **parameters}
         axes = [(name, [float(x) for x in value]) for name, value in every.items() if _is_axis(value)]
@@ -212,12 +214,12 @@ class Model:
         if cluster is not None:
             if target is None:
                 raise InputError("a sweep on a cluster needs out, a file that all workers see")
-            assignment = (self._set(None, fixed), M, axes, number, _near(near))
+            assignment = (self._set(None, fixed), M, axes, number, _near(near), list(columns))
             path = Path(target).resolve()
             distributed.run(cluster, self, assignment, path, tasks, cpus)
-            return Sweep(self, axes, distributed.rows(path, len(axes)))
-        found = self._core.sweep(self._set(None, fixed), M, axes, number, _near(near), target)
-        return Sweep(self, axes, json.loads(found))
+            return Sweep(self, axes, distributed.rows(path, len(axes), list(columns)), columns)
+        found = self._core.sweep(self._set(None, fixed), M, axes, number, _near(near), list(columns), target)
+        return Sweep(self, axes, json.loads(found), columns)
 
     def verify(
         self,

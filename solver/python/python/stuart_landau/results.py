@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -342,11 +343,13 @@ class Certificate(Result):
 
 class Sweep(Result):
     """Landau points over a product of axes. `axes`: values by name; columns as arrays of that shape, the first axis
-    first; what has no value is nan, and `status` says why."""
+    first; what has no value is nan, and `status` says why. `derived`: the columns that were asked for, by their text."""
 
     columns = ("c0", "c0_error", "c2", "c2_error", "amplitude", "mean_flow", "second_harmonic")
 
-    def __init__(self, model: Any, axes: list[tuple[str, list[float]]], data: list[dict[str, Any]]) -> None:
+    def __init__(
+        self, model: Any, axes: list[tuple[str, list[float]]], data: list[dict[str, Any]], derived: Sequence[str] = ()
+    ) -> None:
         super().__init__(model, data)
         self.axes = {name: np.array(values) for name, values in axes}
         shape = tuple(len(values) for _, values in axes)
@@ -362,6 +365,10 @@ class Sweep(Result):
             return placed([math.nan if r[name] is None else r[name] for r in data], float)
 
         self._columns = {name: column(name) for name in self.columns}
+        self.derived = {
+            name: placed([math.nan if (x := r["derived"][index]) is None else x for r in data], float)
+            for index, name in enumerate(derived)
+        }
         self.bifurcation = placed([r["bifurcation"] for r in data], object)
         self.status = placed([r["status"] for r in data], object)
 
@@ -389,6 +396,7 @@ class Sweep(Result):
                 data[f"{name}_im"] = (dims, values.imag)
             else:
                 data[name] = (dims, values)
+        data.update({name: (dims, values) for name, values in self.derived.items()})
         data["bifurcation"] = (dims, self.bifurcation.astype(str))
         data["status"] = (dims, self.status.astype(str))
         return _xarray().Dataset(data, dict(self.axes), self._attributes())
