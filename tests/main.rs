@@ -23,6 +23,7 @@ mod recipes;
 mod reproduce;
 mod shards;
 mod statements;
+mod studies;
 mod support;
 mod sweeps;
 mod tutorial;

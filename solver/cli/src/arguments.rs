@@ -155,14 +155,18 @@ pub enum Command {
     },
     /// Work through a study file: figures, numbers beside the printed ones, a report in HTML.
     #[command(
-        after_help = "Examples:\n  landau reproduce --out report\n  landau reproduce my/studies/mine.toml --out report\n\nWithout a file, the only one in a folder `studies` here or one level below is taken.\nAn interrupted run goes on with the task where it was."
+        after_help = "Examples:\n  landau reproduce --out report\n  landau reproduce my/studies/mine.toml --out report\n  landau reproduce --out report --shard 1/8\n\nWithout a file, the only one in a folder `studies` here or one level below is taken.\nAn interrupted run goes on with the task where it was."
     )]
     Reproduce {
         /// A study file.
         study: Option<PathBuf>,
-        /// The folder of the report.
+        /// The folder of the report; finished tasks are kept beside it, in a folder with `.kept` at its end.
         #[arg(long, default_value = "report")]
         out: PathBuf,
+        /// Compute one share of the tasks and keep them, for the same command without it to put together; `slurm` takes
+        /// that of the task of a job array.
+        #[arg(long, value_name = "I/N")]
+        shard: Option<String>,
         /// Print one JSON object alone on standard output.
         #[arg(long)]
         json: bool,

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// A text that is neither; Slurm's variables missing.
-fn share(text: &str) -> Result<Share> {
+pub fn share(text: &str) -> Result<Share> {
     if text != "slurm" {
         return Share::parse(text);
     }

@@ -133,9 +133,12 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
             let setup = &setup(library, &model, &common)?;
             pattern::pattern(setup, &options, &common)
         }
-        Command::Reproduce { study, out, json } => {
-            reproduce::reproduce(library, study.as_deref(), &out, json)
-        }
+        Command::Reproduce {
+            study,
+            out,
+            shard,
+            json,
+        } => reproduce::reproduce(library, study.as_deref(), &out, shard.as_deref(), json),
         Command::Verify {
             model,
             k,

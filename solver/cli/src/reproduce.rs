@@ -1,15 +1,23 @@
 //! The command `reproduce`: a study file worked through.
 
+use crate::cluster::share;
 use crate::inspect;
 use crate::progress::Bar;
 use landau_report::library::Library;
 use landau_report::reproduce::{Errata, Provenance, Study, Verdict, Workshop, beside};
 use landau_solver::error::{Error, Result};
+use landau_solver::study::shard::Share;
 use serde_json::json;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool) -> Result<()> {
+pub fn reproduce(
+    library: &Library,
+    study: Option<&Path>,
+    out: &Path,
+    shard: Option<&str>,
+    json: bool,
+) -> Result<()> {
     let path = match study {
         Some(path) => path.to_owned(),
         None => only_study()?,
@@ -31,6 +39,21 @@ pub fn reproduce(library: &Library, study: Option<&Path>, out: &Path, json: bool
         kept: kept(out),
         provenance: provenance(),
     };
+    if let Some(text) = shard {
+        let share = share(text)?;
+        let count = shop.run_share(share, &Bar::new("reproducing"))?;
+        let (Share { index, count: of }, kept) = (share, shop.kept.display());
+        match json {
+            true => say!(
+                "{}",
+                json!({"share": [index, of], "tasks": count, "kept": kept.to_string()})
+            ),
+            false => say!(
+                "share {index} of {of}: {count} tasks kept in {kept}; when all shares are there, the same command without --shard writes the report"
+            ),
+        }
+        return Ok(());
+    }
     let found = shop.run(&formulas, &Bar::new("reproducing"))?;
     let page = out.join("index.html");
     let failing = found.claims.iter().filter(|c| c.verdict == Verdict::Fails);

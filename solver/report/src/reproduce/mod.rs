@@ -21,9 +21,10 @@ use landau_solver::error::{Error, Result};
 use landau_solver::file::write_whole;
 use landau_solver::study::Progress;
 use landau_solver::study::Setup;
+use landau_solver::study::shard::Share;
 use std::fs;
 use std::path::{Path, PathBuf};
-use study::{Case, Task};
+use study::{Case, Figure, Task};
 
 /// Where a study is worked on.
 pub struct Workshop<'a> {
@@ -41,6 +42,15 @@ pub struct Workshop<'a> {
     pub provenance: Provenance,
 }
 
+/// A task and where it belongs.
+#[derive(Clone, Copy)]
+struct Unit<'a> {
+    section: usize,
+    figure: &'a Figure,
+    index: usize,
+    task: &'a Task,
+}
+
 impl Workshop<'_> {
     /// Works through the study and writes the report.
     ///
@@ -48,30 +58,70 @@ impl Workshop<'_> {
     /// A folder that cannot be written, a model that does not exist. What merely does not come out stays in the
     /// report where its number would stand, with the reason.
     pub fn run(&self, formulas: &Formulas, progress: &dyn Progress) -> Result<Outcome> {
-        for folder in [&self.kept, &self.out.join("sources")] {
-            fs::create_dir_all(folder)
-                .map_err(|e| Error::input(format!("{} cannot be made: {e}", folder.display())))?;
-        }
-        let tasks = self.study.figure.iter().map(|figure| figure.task.len());
-        progress.begin(tasks.sum());
-        let mut outcomes = Vec::new();
-        for figure in &self.study.figure {
-            let mut outcome = Outcome::default();
-            for (index, task) in figure.task.iter().enumerate() {
-                let stem = format!("{}-{}", figure.id, index + 1);
-                let path = self.kept.join(format!("{stem}.json"));
-                outcome.add(self.task(&figure.id, &stem, task, &path)?);
-                progress.advance(1);
-            }
-            outcomes.push(outcome);
-        }
-        progress.end();
+        let tasks = self.tasks();
+        let mut outcomes: Vec<Outcome> = Vec::new();
+        outcomes.resize_with(self.study.figure.len(), Outcome::default);
+        self.work(&tasks, progress, |task, outcome| {
+            outcomes[task.section].add(outcome);
+        })?;
         page::write(self, formulas, &outcomes)?;
         let mut whole = Outcome::default();
         outcomes.into_iter().for_each(|outcome| whole.add(outcome));
         self.write_json("numbers.json", &whole.numbers)?;
         self.write_json("claims.json", &whole.claims)?;
         Ok(whole)
+    }
+
+    /// Works through one share of the tasks, which are kept for a run of all.
+    ///
+    /// # Errors
+    /// As [`Workshop::run`].
+    pub fn run_share(&self, share: Share, progress: &dyn Progress) -> Result<usize> {
+        let tasks = self.tasks();
+        // One after another of the shares takes a task, for neighbours take alike long.
+        let mine = tasks
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| i % share.count == share.index - 1);
+        let mine: Vec<Unit> = mine.map(|(_, task)| *task).collect();
+        self.work(&mine, progress, |_, _| ())?;
+        Ok(mine.len())
+    }
+
+    /// Every task of the study, in order.
+    fn tasks(&self) -> Vec<Unit<'_>> {
+        let sections = self.study.figure.iter().enumerate();
+        let tasks = sections.flat_map(|(section, figure)| {
+            let own = figure.task.iter().enumerate();
+            own.map(move |(index, task)| Unit {
+                section,
+                figure,
+                index,
+                task,
+            })
+        });
+        tasks.collect()
+    }
+
+    fn work(
+        &self,
+        tasks: &[Unit],
+        progress: &dyn Progress,
+        mut take: impl FnMut(&Unit, Outcome),
+    ) -> Result<()> {
+        for folder in [&self.kept, &self.out.join("sources")] {
+            fs::create_dir_all(folder)
+                .map_err(|e| Error::input(format!("{} cannot be made: {e}", folder.display())))?;
+        }
+        progress.begin(tasks.len());
+        for unit in tasks {
+            let stem = format!("{}-{}", unit.figure.id, unit.index + 1);
+            let path = self.kept.join(format!("{stem}.json"));
+            take(unit, self.task(&unit.figure.id, &stem, unit.task, &path)?);
+            progress.advance(1);
+        }
+        progress.end();
+        Ok(())
     }
 
     fn write_json<T: serde::Serialize>(&self, name: &str, list: &[T]) -> Result<()> {
