@@ -121,3 +121,14 @@ fn files_are_read_to_the_end() {
         assert!(lines <= 500, "{} has {lines} lines", path.display());
     }
 }
+
+/// The table of the generator's stages stands once: the crate's documentation includes it, ARCHITECTURE.md repeats it.
+#[test]
+fn the_stages_are_said_once() {
+    let read = |path: &str| std::fs::read_to_string(crate::support::root().join(path)).expect(path);
+    let (stages, whole) = (read("codegen/STAGES.md"), read("ARCHITECTURE.md"));
+    assert!(
+        whole.contains(stages.trim()),
+        "ARCHITECTURE.md does not hold codegen/STAGES.md"
+    );
+}

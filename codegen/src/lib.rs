@@ -2,15 +2,7 @@
 //!
 //! The pipeline, one module a stage and one type a stage:
 //!
-//! | stage | module | from | to |
-//! |---|---|---|---|
-//! | parse | `syntax` | text | `ModelTree` |
-//! | resolve | [`model`] | syntax tree | [`model::Model`], on one [`graph::Graph`] |
-//! | derive | [`mod@derive`] | checked model | [`derive::Derivation`]: L, L†, N2, N3, conditions |
-//! | lower | [`kernel`] | operators | [`kernel::ModelKernels`]: straight-line programs |
-//! | write | [`mod@formula`] | expressions | [`formula::Formula`]: trees, terms gathered as papers do |
-//! | emit | [`emit`] | kernels, operators, formulas | Rust source, text, LaTeX |
-//! | compare | [`errata`] | operators, a printed formula | [`errata::Comparison`], term by term |
+#![doc = include_str!("../STAGES.md")]
 //!
 //! [`generate`] is the whole of it on a screen; [`build`] wraps it for a build script.
 
