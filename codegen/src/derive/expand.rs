@@ -6,6 +6,7 @@
 
 use super::form::Form;
 use super::open::Dependence;
+use super::value::base_value;
 use crate::graph::{
     FieldId, Function, Graph, Id, Jet, LawAtom, Node, Operator, ParameterId, Rational, Table,
     Variable,
@@ -217,24 +218,6 @@ impl<'a> Expander<'a> {
             form.accumulate(graph, monomial, value);
         }
         form
-    }
-}
-
-/// ∂y^order of a base field: an atom where the base is solved for, an expression where it is given.
-pub fn base_value(
-    graph: &mut Graph,
-    closed: &Table<FieldId, Option<Id>>,
-    field: FieldId,
-    order: u8,
-) -> Id {
-    match closed[field] {
-        None => graph.base(field, order),
-        Some(mut value) => {
-            for _ in 0..order {
-                value = graph.differentiate(value, Variable::AlongBase);
-            }
-            value
-        }
     }
 }
 

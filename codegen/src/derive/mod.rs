@@ -15,18 +15,19 @@ mod open;
 mod pairing;
 mod parity;
 mod regular;
+mod value;
 mod wall;
 
 pub use base::BaseRow;
 pub use boundary::{Combination, Symbol};
 pub use case::{AdjointCondition, Case};
 pub use closure::CaseClosure;
-pub use expand::base_value;
 pub use form::{Form, Monomial};
 pub use linear::{AdjointTerm, DirectTerm, Term};
 pub use offsets::Offsets;
 pub use open::{Dependence, Opener, carry_out, dependence};
 pub use parity::Parity;
+pub use value::base_value;
 pub use wall::{BaseCondition, WallCondition};
 
 use crate::diagnostic::{Diagnostic, Diagnostics, Location};

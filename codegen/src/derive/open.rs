@@ -2,7 +2,7 @@
 //!
 //! This happens last, when kernels are made; until then L, N2 and N3 do not depend on the closure.
 
-use super::expand::base_value;
+use super::value::base_value;
 use crate::graph::{FieldId, Graph, Id, Jet, LawAtom, LawId, Node, Operator, Table, Variable};
 use crate::model::Law;
 use std::collections::HashMap;

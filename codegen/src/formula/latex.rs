@@ -1,6 +1,6 @@
 //! A formula in LaTeX, without packages beyond amsmath.
 
-use super::{Binding, Formula, Mark};
+use super::{Binding, Formula, Mark, signed_sum};
 use crate::graph::Rational;
 use num_traits::Signed;
 
@@ -40,7 +40,7 @@ pub fn latex(formula: &Formula) -> String {
         }
         Formula::Of(operator, what) => latex(operator) + &at(what, Binding::Atom),
         Formula::Negative(inside) => format!("-{}", at(inside, Binding::Product)),
-        Formula::Sum(_) => sum(formula),
+        Formula::Sum(_) => signed_sum(formula, at),
         Formula::Product(factors) => product(factors),
         // The bar of a fraction is bracket enough.
         Formula::Fraction(above, below) => {
@@ -78,20 +78,6 @@ fn bracketed(inside: &str) -> String {
         true => format!("\\left[{inside}\\right]"),
         false => format!("\\left({inside}\\right)"),
     }
-}
-
-fn sum(formula: &Formula) -> String {
-    let mut text = String::new();
-    for (negative, term) in formula.terms() {
-        text += match (text.is_empty(), negative) {
-            (true, false) => "",
-            (true, true) => "-",
-            (false, false) => " + ",
-            (false, true) => " - ",
-        };
-        text += &at(term, Binding::Product);
-    }
-    text
 }
 
 /// Factors side by side, with a space where names of several letters would run together.

@@ -205,6 +205,21 @@ impl Formula {
     }
 }
 
+/// A sum by a printer: terms joined with + and −.
+fn signed_sum(formula: &Formula, at: fn(&Formula, Binding) -> String) -> String {
+    let mut text = String::new();
+    for (negative, term) in formula.terms() {
+        text += match (text.is_empty(), negative) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        text += &at(term, Binding::Product);
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::{Formula, Mark, latex, plain};

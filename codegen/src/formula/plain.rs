@@ -1,6 +1,6 @@
 //! A formula on one line of text.
 
-use super::{Binding, Formula, Mark};
+use super::{Binding, Formula, Mark, signed_sum};
 
 /// n⁰_y v' + √T⁰/2
 pub fn plain(formula: &Formula) -> String {
@@ -31,7 +31,7 @@ pub fn plain(formula: &Formula) -> String {
         },
         Formula::Of(operator, what) => plain(operator) + &at(what, Binding::Atom),
         Formula::Negative(inside) => format!("-{}", at(inside, Binding::Product)),
-        Formula::Sum(_) => sum(formula),
+        Formula::Sum(_) => signed_sum(formula, at),
         Formula::Product(factors) => product(factors),
         Formula::Fraction(above, below) => {
             format!(
@@ -55,7 +55,7 @@ pub fn plain(formula: &Formula) -> String {
             format!("select({switch}; {})", branches.join(", "))
         }
         Formula::Integral(integrand, variable) => format!("∫ {} d{variable}", plain(integrand)),
-        Formula::Lines(lines) => sum(&Formula::Sum(lines.clone())),
+        Formula::Lines(lines) => signed_sum(&Formula::Sum(lines.clone()), at),
         Formula::Equation(left, right) => format!("{} = {}", plain(left), plain(right)),
     }
 }
@@ -67,20 +67,6 @@ fn at(formula: &Formula, context: Binding) -> String {
         true => format!("({text})"),
         false => text,
     }
-}
-
-fn sum(formula: &Formula) -> String {
-    let mut text = String::new();
-    for (negative, term) in formula.terms() {
-        text += match (text.is_empty(), negative) {
-            (true, false) => "",
-            (true, true) => "-",
-            (false, false) => " + ",
-            (false, true) => " - ",
-        };
-        text += &at(term, Binding::Product);
-    }
-    text
 }
 
 fn product(factors: &[Formula]) -> String {

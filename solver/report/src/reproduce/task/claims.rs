@@ -3,10 +3,10 @@
 use super::super::Workshop;
 use super::super::outcome::{Claim, Number, Outcome, Verdict};
 use super::super::study::{Case, Quantity, Statement, named};
-use super::curves::rows;
 use super::each;
 use super::planes::crest;
 use super::points::critical_point;
+use super::rows::rows;
 use landau_solver::error::{Error, Result};
 use landau_solver::study::Setup;
 use landau_solver::study::point::PointReport;

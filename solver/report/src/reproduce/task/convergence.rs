@@ -3,9 +3,9 @@
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Axis, Case, named};
-use super::curves::rows;
 use super::draw::picture;
 use super::each;
+use super::rows::rows;
 use crate::figure::{Panel, Style};
 use landau_solver::error::Result;
 use landau_solver::study::row::{Column, Row, column};

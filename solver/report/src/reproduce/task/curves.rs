@@ -6,41 +6,13 @@ use super::super::study::{Asked, Axis, Case, Drawn, Of, Reference, Together, nam
 use super::draw::picture;
 use super::each;
 use super::points::{critical_point, question};
+use super::rows::rows;
 use crate::figure::{Panel, Style};
-use crate::library::column as column_of;
 use landau_solver::error::{Error, Result};
+use landau_solver::study::Silent;
 use landau_solver::study::critical::{self, Critical};
 use landau_solver::study::row::{Column, NUMBERS, Row, column};
-use landau_solver::study::sweep::{Range, Sweep};
-use landau_solver::study::{self, Setup, Silent};
 use rayon::prelude::*;
-
-/// Landau points of one case over an axis.
-pub(super) fn rows(
-    setup: &Setup,
-    k: Option<f64>,
-    name: &str,
-    values: Vec<f64>,
-    columns: &[String],
-) -> Result<Vec<Row>> {
-    let axis = study::Axis::named(setup.model.as_ref(), name)?;
-    let range = Range {
-        name: name.to_owned(),
-        axis,
-        values,
-    };
-    let sweep = Sweep {
-        setup,
-        ranges: vec![range],
-        near: None,
-        k,
-        derived: columns
-            .iter()
-            .map(|text| column_of(setup.model.as_ref(), text))
-            .collect::<Result<_>>()?,
-    };
-    Ok(sweep.run(&Silent))
-}
 
 /// The critical points that are to be marked, of the first case.
 fn marked(shop: &Workshop, case: &Case, marks: &[Asked]) -> Result<Vec<(Asked, Critical)>> {

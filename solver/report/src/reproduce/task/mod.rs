@@ -9,6 +9,7 @@ mod laws;
 mod planes;
 mod points;
 mod profiles;
+mod rows;
 
 use super::Workshop;
 use super::outcome::Outcome;

@@ -3,8 +3,8 @@
 use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Asked, Axis, Case, Of, named};
-use super::curves::rows;
 use super::draw::picture;
+use super::rows::rows;
 use super::{Named, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
