@@ -22,6 +22,7 @@ mod published_bed;
 mod recipes;
 mod reproduce;
 mod shards;
+mod slurm;
 mod statements;
 mod studies;
 mod support;
