@@ -45,8 +45,14 @@ pub fn changed(setup: &Setup, k: f64) -> String {
         let moved = setup.parameters.automatic[id] || setup.parameters.values[id] != info.default;
         moved.then(|| format!("{} = {value}", info.name))
     });
-    let all: Vec<String> = own.chain([format!("k = {k}")]).collect();
+    let all: Vec<String> = own.chain([format!("k = {}", short(k))]).collect();
     all.join(", ")
+}
+
+/// A number in a title: six decimals at most.
+pub fn short(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A number without the part that its error leaves nothing of.

@@ -6,6 +6,10 @@ use kuva::prelude::*;
 /// Below this the plotting library's logarithmic axes stand still.
 const LOWEST_LOGARITHMIC: f64 = 1e-10;
 
+/// Letters on a line of a panel's title, and intervals of its axes.
+const TITLE: usize = 42;
+const TICKS: usize = 6;
+
 /// Points on each side of a pole that may be its needle.
 const NEEDLE: usize = 12;
 
@@ -18,6 +22,8 @@ pub enum Style {
     Dashed,
     /// Not joined.
     Dots,
+    /// Not joined, and large enough to be seen around dots.
+    Discs,
 }
 
 /// Points of one quantity; a gap (a point that is not finite) ends a run.
@@ -161,6 +167,8 @@ impl Panel {
     fn layout(&self, title: String, curves: &[Plot]) -> Layout {
         let mut layout = Layout::auto_from_plots(curves)
             .with_title(title)
+            .with_title_wrap(TITLE)
+            .with_ticks(TICKS)
             .with_x_label(self.x.clone())
             .with_y_label(self.y.clone());
         let extent = self.extent();
@@ -215,9 +223,11 @@ impl Panel {
             for (position, run) in self.runs(curve).into_iter().enumerate() {
                 // One entry of the legend a curve.
                 let label = (position == 0 && !curve.label.is_empty()).then_some(&curve.label);
-                if curve.style == Style::Dots || run.len() == 1 {
+                let dots = matches!(curve.style, Style::Dots | Style::Discs);
+                if dots || run.len() == 1 {
                     let mut plot = ScatterPlot::new().with_data(run).with_color(colour);
-                    plot = plot.with_size(3.0);
+                    let disc = curve.style == Style::Discs;
+                    plot = plot.with_size(if disc { 6.0 } else { 3.0 });
                     if let Some(label) = label {
                         plot = plot.with_legend(label.clone());
                     }
@@ -256,13 +266,19 @@ pub fn panels(title: &str, panels: &[Panel]) -> Option<Drawing> {
             _ => format!("({}) ", char::from(b'a' + index as u8)),
         };
         let curves = panel.plots();
-        layouts.push(panel.layout(format!("{letter}{}", panel.title), &curves));
+        // One panel has room for one title, which goes on from line to line.
+        let own = match (drawn.len(), title, panel.title.as_str()) {
+            (1, "", own) | (2.., _, own) => format!("{letter}{own}"),
+            (_, title, "") => title.to_owned(),
+            (_, title, own) => format!("{title}: {own}"),
+        };
+        layouts.push(panel.layout(own, &curves));
         plots.push(curves);
         says.push(format!("{letter}{}", panel.says()));
     }
     let columns = drawn.len().min(2);
     let mut figure = Figure::new(drawn.len().div_ceil(columns), columns);
-    if !title.is_empty() {
+    if !title.is_empty() && drawn.len() > 1 {
         figure = figure.with_title(title);
     }
     let figure = figure

@@ -8,6 +8,7 @@ use landau_solver::study::Setup;
 use landau_solver::study::critical::Scan;
 use landau_solver::study::modes::{ModeProfile, Modes};
 use landau_solver::study::spectrum::SpectrumReport;
+use landau_solver::words::short;
 
 /// Below this part of the largest value of a mode a part counts as zero.
 const NOTHING: f64 = 1e-9;
@@ -39,7 +40,10 @@ pub fn modes(structure: &Structure, found: &Modes) -> Option<Drawing> {
         panel
     };
     let drawn: Vec<Panel> = found.profiles.iter().map(panel).collect();
-    panels(&format!("{}, k = {}", structure.title, found.k), &drawn)
+    panels(
+        &format!("{}, k = {}", structure.title, short(found.k)),
+        &drawn,
+    )
 }
 
 /// The slow eigenvalues of L and L† in the complex plane.
@@ -47,12 +51,12 @@ pub fn spectrum(found: &SpectrumReport) -> Option<Drawing> {
     let reach = REACH * found.direct.scale();
     let shown = |c: &&C64| reach == 0.0 || c.norm() <= reach;
     let mut panel = Panel::new(
-        &format!("{}, k = {}", found.title, found.k),
+        &format!("{}, k = {}", found.title, short(found.k)),
         "growth rate",
         "frequency",
     );
     let direct = found.direct.values.iter().filter(shown);
-    panel.curve("L", Style::Dots, direct.map(|c| (c.re, c.im)).collect());
+    panel.curve("L", Style::Discs, direct.map(|c| (c.re, c.im)).collect());
     if let Ok(adjoint) = &found.adjoint {
         let conjugate = adjoint.values.iter().filter(shown).map(|c| (c.re, -c.im));
         panel.curve("L†, conjugate", Style::Dots, conjugate.collect());

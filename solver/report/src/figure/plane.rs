@@ -12,6 +12,8 @@ const ARROWS: f64 = 26.0;
 /// Pixels of a panel's longer side, and of what surrounds the axes.
 const SIDE: f64 = 520.0;
 const MARGIN: [f64; 2] = [170.0, 110.0];
+/// Pixels of a strip's height, at least.
+const THINNEST: f64 = 130.0;
 
 /// One picture of the plane; arrays are `[y][x]`.
 pub struct Plane<'a> {
@@ -45,10 +47,17 @@ pub fn planes(title: &str, planes: &[Plane]) -> Drawing {
             .with_show_grid(false)
             .with_clamp_axis()
             .with_x_axis_min(plane.x[0])
-            .with_x_axis_max(plane.x[plane.x.len() - 1])
-            .with_equal_aspect();
+            .with_x_axis_max(plane.x[plane.x.len() - 1]);
         let [width, height] = plane.extent();
         let unit = SIDE / width.max(height);
+        // A thin strip is drawn thicker than it is.
+        let thin = unit * height < THINNEST;
+        let layout = if thin {
+            layout
+        } else {
+            layout.with_equal_aspect()
+        };
+        let height = if thin { THINNEST / unit } else { height };
         cell[0] = cell[0].max(unit * width + MARGIN[0]);
         cell[1] = cell[1].max(unit * height + MARGIN[1]);
         plots.push(contents);

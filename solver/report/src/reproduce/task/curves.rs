@@ -14,14 +14,45 @@ use landau_solver::study::critical::{self, Critical};
 use landau_solver::study::row::{Column, NUMBERS, Row, column};
 use rayon::prelude::*;
 
-/// The critical points that are to be marked, of the first case.
-fn marked(shop: &Workshop, case: &Case, marks: &[Asked]) -> Result<Vec<(Asked, Critical)>> {
+/// The critical points of the first case that are to be marked: numbers too, whether they come out or not.
+fn marked(
+    shop: &Workshop,
+    figure: &str,
+    case: &Case,
+    marks: &[Asked],
+    outcome: &mut Outcome,
+) -> Result<Vec<(Asked, Critical)>> {
     let setup = shop.setup(case)?;
-    let found = marks.par_iter().map(|asked| {
-        let point = critical_point(&setup, case, asked)?;
-        Ok((asked.clone(), point))
-    });
-    found.collect()
+    let found: Vec<Result<Critical>> = marks
+        .par_iter()
+        .map(|asked| critical_point(&setup, case, asked))
+        .collect();
+    let mut marked = Vec::new();
+    for (asked, point) in marks.iter().zip(found) {
+        let label = named(case, &asked.name);
+        let number = Number::new(figure, case, &asked.name, label.clone());
+        outcome.numbers.push(match point {
+            Ok(point) => {
+                let number = number.answered(point.value, Some(point.error));
+                marked.push((asked.clone(), point));
+                number
+            }
+            Err(Error::Input(message)) => return Err(Error::Input(message)),
+            Err(error) => {
+                outcome.failures.push(format!("{label}: {error}"));
+                number.failed(&error.to_string())
+            }
+        });
+    }
+    Ok(marked)
+}
+
+/// Where the source prints critical points of a case, on the axis.
+fn printed(case: &Case, marks: &[Asked]) -> Vec<(f64, f64)> {
+    let printed = marks
+        .iter()
+        .filter_map(|asked| case.printed.get(&asked.name));
+    printed.map(|printed| (printed.value, 0.0)).collect()
 }
 
 /// A curve that ends on the points where it vanishes, as A_e does on a bifurcation and on a resonance.
@@ -44,6 +75,7 @@ fn ended(mut points: Vec<(f64, f64)>, ends: &[f64]) -> Vec<(f64, f64)> {
 
 /// What of a sweep is to be shown, and how.
 pub(super) struct Wanted<'a> {
+    pub figure: &'a str,
     pub over: &'a Axis,
     pub columns: &'a [Together],
     pub marks: &'a [Asked],
@@ -88,14 +120,8 @@ pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<
         let setup = shop.setup(case)?;
         rows(&setup, case.k, &over.name, over.values(), &derived)
     })?;
-    let marks = match marked(shop, &cases[0], marks) {
-        Ok(marks) => marks,
-        Err(Error::Input(message)) => return Err(Error::Input(message)),
-        Err(error) => {
-            outcome.failures.push(format!("marks: {error}"));
-            Vec::new()
-        }
-    };
+    let printed = printed(&cases[0], marks);
+    let marks = marked(shop, wanted.figure, &cases[0], marks, &mut outcome)?;
     let ends = marks.iter().filter(|(asked, _)| asked.of != Of::C2);
     let ends: Vec<f64> = ends.map(|(_, point)| point.value).collect();
     let names = |column: &Drawn| -> (String, String) {
@@ -171,6 +197,9 @@ pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<
             unconverged += usize::from(row.c2.is_none());
         }
     }
+    if !printed.is_empty() && !wanted.logarithmic[1] {
+        drawn[0].curve("printed", Style::Dots, printed);
+    }
     for asked in wanted.reference {
         let points = reference(shop, asked)?;
         let count = drawn.len();
@@ -210,17 +239,8 @@ pub(super) fn resonance(
         Ok((one, rows(&setup, None, "k", doubled, &[])?))
     })?;
     let mut panel = Panel::new("2:1 resonance", "k", "a0");
-    for (asked, point) in marked(shop, &cases[0], marks)? {
+    for (asked, point) in marked(shop, figure, &cases[0], marks, &mut outcome)? {
         panel.marks.push((point.value, asked.name.clone()));
-        let number = Number::new(
-            figure,
-            &cases[0],
-            &asked.name,
-            named(&cases[0], &asked.name),
-        );
-        outcome
-            .numbers
-            .push(number.answered(point.value, Some(point.error)));
     }
     let mut table = Table::new(&["case", "k", "a0(k)", "a0(2k)/2"]).with_words(&["label"]);
     for (index, (one, two)) in &found {

@@ -69,6 +69,7 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             reference,
         } => {
             let wanted = curves::Wanted {
+                figure,
                 over,
                 columns,
                 marks: mark,
