@@ -236,6 +236,10 @@ fn a_study_that_asks_for_nothing_known_is_refused() {
         ),
         (STUDY.replace("count = 5", "count = 0"), "count = 0"),
         (
+            STUDY.replace("columns = [", "colums = ["),
+            "unknown field `colums`",
+        ),
+        (
             STUDY.replace("none = \"0.1790\"", "none = \"0.1x\""),
             "is no number",
         ),
@@ -250,6 +254,16 @@ fn a_study_that_asks_for_nothing_known_is_refused() {
         ]);
         assert_eq!(answer.status, 2, "{expected}: {}", answer.err);
         assert!(answer.err.contains(expected), "{expected}: {}", answer.err);
+        // What is wrong in the file is pointed at by its own line.
+        let (_, line) = answer.err.split_once(" | ").unwrap_or_default();
+        let shown = line.lines().next().unwrap_or_default();
+        if ["swoop", "count = 0", "two figures", "colums"]
+            .iter()
+            .any(|e| expected.contains(e))
+        {
+            let key = expected.rsplit('`').nth(1).unwrap_or(expected);
+            assert!(shown.contains(key), "{expected}: {}", answer.err);
+        }
         assert!(!out.join("index.html").exists());
     }
 }

@@ -1,6 +1,7 @@
 //! A study file: which models, parameters and sweeps make which figure, and what was printed.
 
 mod axis;
+mod place;
 mod printed;
 
 pub use axis::{Axis, Spacing};
@@ -10,6 +11,7 @@ use landau_solver::error::{Error, Result};
 use landau_solver::study::row::Column;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 /// The whole file.
@@ -395,8 +397,10 @@ impl Study {
     pub fn read(path: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(path)
             .map_err(|e| Error::input(format!("{} cannot be read: {e}", path.display())))?;
+        let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
         let mut study: Study =
-            toml::from_str(&text).map_err(|e| Error::input(format!("{}: {e}", path.display())))?;
+            toml::from_str(&text).map_err(|e| wrong(place::refined(&text, &e)))?;
+        study.check(&text).map_err(wrong)?;
         let name = |path: &Path| {
             path.file_name()
                 .unwrap_or_default()
@@ -410,35 +414,47 @@ impl Study {
                 study.files.push((name(&beside), text));
             }
         }
-        study
-            .check()
-            .map_err(|e| Error::input(format!("{}: {e}", path.display())))?;
         Ok(study)
     }
 
-    /// What is well written but cannot be meant.
-    fn check(&self) -> Result<()> {
+    /// What is well written but cannot be meant, with its place.
+    fn check(&self, text: &str) -> std::result::Result<(), String> {
+        let pointed = |place: Option<Range<usize>>, message: String| match place {
+            Some(place) => Err(place::pointed(text, place, &message)),
+            None => Err(message),
+        };
         let mut known: Vec<&str> = Vec::new();
         for figure in &self.figure {
+            let id = format!("id = \"{}\"", figure.id);
             if known.contains(&figure.id.as_str()) {
-                return Err(Error::input(format!(
+                let message = format!(
                     "two figures have the id `{}`: the files of one would replace those of the other",
                     figure.id
-                )));
+                );
+                return pointed(place::occurrence(text, &id, 2), message);
             }
             known.push(&figure.id);
+            let start = place::occurrence(text, &id, 1).map_or(0, |place| place.start);
+            let end = text[start..]
+                .find("[[figure]]")
+                .map_or(text.len(), |at| start + at);
             for axis in figure.task.iter().filter_map(Task::axis) {
+                let count = format!("count = {}", axis.count);
+                let place = place::occurrence(&text[start..end], &count, 1);
+                let place = place.map(|place| start + place.start..start + place.end);
                 if axis.spacing == Spacing::Geometric && (axis.from <= 0.0 || axis.to <= 0.0) {
-                    return Err(Error::input(format!(
+                    let message = format!(
                         "figure {}: `{}` by equal factors accepts numbers above zero",
                         figure.id, axis.name
-                    )));
+                    );
+                    return pointed(place, message);
                 }
                 if axis.count < 2 {
-                    return Err(Error::input(format!(
+                    let message = format!(
                         "figure {}: count = {} along `{}`: it accepts whole numbers from 2 on",
                         figure.id, axis.count, axis.name
-                    )));
+                    );
+                    return pointed(place, message);
                 }
             }
         }
