@@ -1,6 +1,6 @@
 //! The derived operators as lines in the notation of the literature, as text or as LaTeX.
 
-use crate::derive::{AdjointCondition, CaseClosure, Derivation, Form, Term};
+use crate::derive::{AdjointCondition, Case, CaseClosure, Derivation, Form, Term};
 use crate::formula::{self, Arrangement, Coefficient, Formula, Letters, Mark, latex_words, plain};
 use crate::graph::{BalanceId, FieldId, Id, Jet, Table};
 use crate::model::End;
@@ -28,6 +28,7 @@ pub fn sections(derivation: &Derivation) -> Vec<Section> {
 }
 
 /// What stands before a formula.
+#[derive(Clone, PartialEq)]
 enum Label {
     None,
     Name(String),
@@ -37,6 +38,7 @@ enum Label {
     Entry(String, Formula),
 }
 
+#[derive(Clone, PartialEq)]
 enum Line {
     Heading(String),
     /// The choices of the switches that the following lines hold for.
@@ -222,11 +224,37 @@ impl<'a> Writer<'a> {
             let formula = Formula::equation(integral, self.formula(*value));
             lines.push(Line::Formula(Label::None, formula));
         }
-        for case in &operators.cases {
-            lines.extend(self.case(&case.choices));
-            for condition in &case.base_conditions {
+        lines.extend(self.by_case(|case| {
+            let conditions = case.base_conditions.iter().map(|condition| {
                 let place = Label::Place(self.place(condition.end));
-                lines.push(self.vanishes(place, self.formula(condition.residual)));
+                self.vanishes(place, self.formula(condition.residual))
+            });
+            conditions.collect()
+        }));
+        lines
+    }
+
+    /// Lines that depend on the switches. Grouped, what every choice has stands once.
+    fn by_case(&self, of: impl Fn(&Case) -> Vec<Line>) -> Vec<Line> {
+        let cases = &self.derivation.operators.cases;
+        let mut lists: Vec<Vec<Line>> = cases.iter().map(of).collect();
+        let mut lines = Vec::new();
+        if self.letters.arrangement == Arrangement::Grouped && cases.len() > 1 {
+            let shared = |line: &Line| lists[1..].iter().all(|list| list.contains(line));
+            lines = lists[0]
+                .iter()
+                .filter(|line| shared(line))
+                .cloned()
+                .collect();
+            for list in &mut lists {
+                list.retain(|line| !lines.contains(line));
+            }
+        }
+        for (case, list) in cases.iter().zip(lists) {
+            let needless = list.is_empty() && self.letters.arrangement == Arrangement::Grouped;
+            if !needless {
+                lines.extend(self.case(&case.choices));
+                lines.extend(list);
             }
         }
         lines
@@ -254,18 +282,18 @@ impl<'a> Writer<'a> {
         lines.push(Line::Heading("Linear operator L [balance, field]".into()));
         self.entries(&mut lines, &operators.linear, &rows, self.fields(), false);
         lines.push(Line::Heading("Boundary conditions".into()));
-        for case in &operators.cases {
-            lines.extend(self.case(&case.choices));
-            for condition in &case.conditions {
+        lines.extend(self.by_case(|case| {
+            let conditions = case.conditions.iter().map(|condition| {
                 let place = Label::Place(self.place(condition.end));
-                lines.push(self.vanishes(place, self.form(&condition.form)));
-            }
-        }
+                self.vanishes(place, self.form(&condition.form))
+            });
+            conditions.collect()
+        }));
         lines.push(Line::Heading("Closure at k = 0".into()));
-        for case in &operators.cases {
-            lines.extend(self.case(&case.choices));
-            lines.extend(case.closures.iter().map(|closure| self.closure(closure)));
-        }
+        lines.extend(self.by_case(|case| {
+            let closures = case.closures.iter();
+            closures.map(|closure| self.closure(closure)).collect()
+        }));
         lines.push(Line::Heading(self.parity()));
         lines
     }
@@ -339,18 +367,16 @@ impl<'a> Writer<'a> {
         lines.push(title("Adjoint operator L†"));
         self.entries(&mut lines, &operators.adjoint, rows, columns, false);
         lines.push(Line::Heading("Adjoint boundary conditions".into()));
-        for case in &operators.cases {
-            lines.extend(self.case(&case.choices));
-            match &case.adjoint {
-                Err(reason) => lines.push(Line::Words(reason.clone())),
-                Ok(conditions) => {
-                    for condition in conditions {
-                        let place = Label::Place(self.place(condition.end));
-                        lines.push(self.vanishes(place, self.adjoint_condition(condition)));
-                    }
-                }
+        lines.extend(self.by_case(|case| match &case.adjoint {
+            Err(reason) => vec![Line::Words(reason.clone())],
+            Ok(conditions) => {
+                let conditions = conditions.iter().map(|condition| {
+                    let place = Label::Place(self.place(condition.end));
+                    self.vanishes(place, self.adjoint_condition(condition))
+                });
+                conditions.collect()
             }
-        }
+        }));
         lines
     }
 
