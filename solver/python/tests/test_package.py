@@ -216,3 +216,40 @@ def test_a_share_that_was_killed_is_computed_again(tmp_path):
     assert again.wait() == 0 and second.wait() == 0
     stuart_landau._core.Core.merge([str(one), str(two)], str(tmp_path / "merged.csv"))
     assert (tmp_path / "merged.csv").read_bytes() == plain.read_bytes()
+
+
+def test_a_cluster_that_dies_is_followed_by_another(tmp_path):
+    """All workers of a cluster killed in the middle of a sweep: a new one goes on, and the file is the plain one."""
+    import sys
+
+    script = """
+import sys
+import numpy as np
+from hyperqueue.cluster import LocalCluster, WorkerConfig
+from stuart_landau import Model
+
+folder = sys.argv[1]
+with LocalCluster(folder + "/server" + sys.argv[2], WorkerConfig(cores=1)) as cluster:
+    cluster.start_worker(WorkerConfig(cores=1))
+    places = np.linspace(0.05, 0.17, 3000)
+    Model("vibrated_bed").sweep(k=places, M=40, out=folder + "/shared.csv", cluster=cluster.client(), tasks=6)
+"""
+
+    def start(number):
+        command = [sys.executable, "-c", script, str(tmp_path), str(number)]
+        return subprocess.Popen(command, cwd=tmp_path, start_new_session=True)
+
+    first = start(1)
+    end = time.monotonic() + 60
+    while not list(tmp_path.glob("shared.csv.shard-*")) and time.monotonic() < end:
+        time.sleep(0.05)
+    time.sleep(0.3)
+    os.killpg(first.pid, signal.SIGKILL)
+    first.wait()
+    assert not (tmp_path / "shared.csv").exists(), "it was killed too late"
+    # What a worker had started may live on for a moment.
+    subprocess.run(["pkill", "-KILL", "-f", str(tmp_path)], check=False)
+    assert start(2).wait(timeout=120) == 0
+    plain = Model("vibrated_bed").sweep(k=np.linspace(0.05, 0.17, 3000), M=40, out=tmp_path / "plain.csv")
+    assert (tmp_path / "shared.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
+    assert np.all(plain.c0.real != 0)
