@@ -8,7 +8,7 @@ const LEVELS: usize = 16;
 /// Points of the shading along either axis; data beside the picture may be finer.
 const SHADED: usize = 90;
 /// Arrows along the longer side of a picture.
-const ARROWS: f64 = 26.0;
+const ARROWS: f64 = 24.0;
 /// Pixels of a panel's longer side, and of what surrounds the axes.
 const SIDE: f64 = 520.0;
 const MARGIN: [f64; 2] = [170.0, 110.0];

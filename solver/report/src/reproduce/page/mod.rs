@@ -33,7 +33,9 @@ pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) 
     for (figure, outcome) in study.figure.iter().zip(outcomes) {
         sections.push(section(shop, figure, outcome)?);
     }
+    let told = outcomes.iter().any(|outcome| !outcome.claims.is_empty());
     let extra = [
+        told.then_some(("#statements", "statements")),
         (!formulas.errata.is_empty()).then_some(("#errata", "printed formulas")),
         (!formulas.sections.is_empty()).then_some(("#formulas", "derived operators")),
         Some(("#made", "how it was made")),
@@ -67,6 +69,7 @@ pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) 
                         li { a href=(format!("#figure-{}", figure.id)) { (heading(figure)) " " (rich(&figure.title, &study.symbol)) } }
                     } }
                     @for section in &sections { (section) }
+                    @if told { (statements(shop, outcomes)) }
                     @if !formulas.errata.is_empty() { (formulas::errata(formulas)?) }
                     @if !formulas.sections.is_empty() { (formulas::operators(formulas)?) }
                     (made)
@@ -108,6 +111,28 @@ fn section(shop: &Workshop, figure: &Figure, outcome: &Outcome) -> Result<Markup
             @for failure in &outcome.failures { p.failure { "Did not come out: " (failure) } }
         }
     })
+}
+
+/// Every statement of the source in one table.
+fn statements(shop: &Workshop, outcomes: &[Outcome]) -> Markup {
+    let sections = shop.study.figure.iter().zip(outcomes);
+    let all =
+        sections.flat_map(|(figure, outcome)| outcome.claims.iter().map(move |c| (figure, c)));
+    html! {
+        section id="statements" {
+            h2 { "What the source says in words" a.back href="#top" { "contents" } }
+            div.scroll { table {
+                thead { tr { th { "statement" } th { } th { "decided in" } } }
+                tbody { @for (figure, claim) in all {
+                    tr {
+                        td { (rich(&claim.says, &shop.study.symbol)) }
+                        td { (numbers::verdict(claim)) }
+                        td { a href=(format!("#figure-{}", figure.id)) { (short(figure)) } }
+                    }
+                } }
+            } }
+        }
+    }
 }
 
 /// A picture with what is seen in it and the data it was drawn from.

@@ -108,15 +108,20 @@ fn digits(value: f64) -> String {
     }
 }
 
-/// A statement with what became of it, and the numbers that decide.
-pub(super) fn claim(claim: &Claim, symbols: &Symbols) -> Markup {
+/// What became of a statement, in a word.
+pub(super) fn verdict(claim: &Claim) -> Markup {
     let word = match claim.verdict {
         Verdict::Holds => "holds",
         Verdict::Fails => "fails",
         Verdict::Undecided => "undecided",
     };
+    html! { strong class=(word) { (word) } }
+}
+
+/// A statement with what became of it, and the numbers that decide.
+pub(super) fn claim(claim: &Claim, symbols: &Symbols) -> Markup {
     html! {
-        p { "“" (rich(&claim.says, symbols)) "” " strong class=(word) { (word) } "." }
+        p { "“" (rich(&claim.says, symbols)) "” " (verdict(claim)) "." }
         details { summary { "the numbers that decide it" }
             ul { @for line in &claim.evidence { li { (rich(line, symbols)) } } } }
     }

@@ -100,6 +100,8 @@ pub enum Quantity {
     LargestAmplitude,
     /// Where a0 is largest over an axis.
     LargestGrowth,
+    /// A derived column: an output, or an expression in the base state.
+    Column,
     A0,
     A2,
     /// A_e
@@ -124,6 +126,18 @@ pub struct Statement {
     pub as_first_within: Option<f64>,
     /// Farther than this part of the first case's value from it.
     pub apart_from_first: Option<f64>,
+    /// What a column holds, as `sweep --column` takes it.
+    pub column: Option<String>,
+    /// From each case to the next.
+    pub trend: Option<Trend>,
+}
+
+/// Which way numbers go from case to case.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum Trend {
+    Rising,
+    Falling,
 }
 
 /// `label: quantity`

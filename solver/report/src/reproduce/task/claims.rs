@@ -2,19 +2,25 @@
 
 use super::super::Workshop;
 use super::super::outcome::{Claim, Number, Outcome, Verdict};
-use super::super::study::{Case, Quantity, Statement, named};
+use super::super::study::{Case, Quantity, Statement, Trend, named};
 use super::each;
 use super::planes::crest;
 use super::points::critical_point;
 use super::rows::rows;
+use crate::library::column as derived_column;
+use landau_solver::base::BaseState;
 use landau_solver::error::{Error, Result};
 use landau_solver::study::Setup;
 use landau_solver::study::point::PointReport;
 use landau_solver::study::row::{Column, column};
 use landau_solver::weakly::Selection;
+use std::sync::Arc;
 
 /// A number with its error.
 type Value = (f64, f64);
+
+/// Relative error of a number that nothing else limits.
+const ROUNDING: f64 = 1e-12;
 
 /// What decides a statement in one case.
 fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
@@ -51,6 +57,9 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
         let c0 = row.c0.ok_or_else(|| Error::computation(row.status))?;
         return Ok((c0[0], row.c0_error.unwrap_or(f64::INFINITY)));
     }
+    if statement.quantity == Quantity::Column {
+        return column_value(&setup, k, statement);
+    }
     let point = PointReport::compute(&setup, k, Selection::Leading, 3)?;
     let amplitude_error = |a: f64| {
         // A² = −a0/a2
@@ -65,10 +74,32 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
                 .ok_or_else(|| Error::computation("there is no equilibrium at cubic order"))?;
             Ok((a, amplitude_error(a)))
         }
-        Quantity::Place | Quantity::A0 | Quantity::LargestAmplitude | Quantity::LargestGrowth => {
-            unreachable!("answered above")
-        }
+        Quantity::Place
+        | Quantity::A0
+        | Quantity::Column
+        | Quantity::LargestAmplitude
+        | Quantity::LargestGrowth => unreachable!("answered above"),
     }
+}
+
+/// A derived column, and how far the base state at another degree puts it.
+fn column_value(setup: &Setup, k: f64, statement: &Statement) -> Result<Value> {
+    let missing = || Error::input("a statement about a column needs `column`");
+    let text = statement.column.as_ref().ok_or_else(missing)?;
+    let derived = derived_column(setup.model.as_ref(), text)?;
+    let value = |base: &Arc<BaseState>| -> Result<f64> {
+        let point = setup.point(base, k, Selection::Leading)?;
+        let none = || Error::computation(format!("`{text}` has no value there"));
+        derived.value(&point, point.amplitude()).ok_or_else(none)
+    };
+    let base = setup.base(None)?;
+    let own = value(&base)?;
+    let other = base
+        .refined()
+        .map(|base| value(&Arc::new(base)))
+        .transpose()?;
+    let error = other.map_or(0.0, |other| (other - own).abs());
+    Ok((own, error.max(ROUNDING * own.abs())))
 }
 
 /// Where a quantity is largest along an axis, to half a step of it.
@@ -100,7 +131,12 @@ fn where_largest(
 }
 
 /// Whether a value meets the statement; nothing where its error leaves that open.
-fn meets(statement: &Statement, first: Option<Value>, (value, error): Value) -> Option<bool> {
+fn meets(
+    statement: &Statement,
+    first: Option<Value>,
+    before: Option<Value>,
+    (value, error): Value,
+) -> Option<bool> {
     let beyond = |distance: f64| match distance.abs() > error {
         true => Some(distance > 0.0),
         false => None,
@@ -116,6 +152,16 @@ fn meets(statement: &Statement, first: Option<Value>, (value, error): Value) -> 
         && value != reference
     {
         demands.push(beyond((value - reference).abs() - share * reference.abs()));
+    }
+    if let (Some(trend), Some((last, also))) = (statement.trend, before) {
+        let gain = match trend {
+            Trend::Rising => value - last,
+            Trend::Falling => last - value,
+        };
+        demands.push(match gain.abs() > error + also {
+            true => Some(gain > 0.0),
+            false => None,
+        });
     }
     if demands.contains(&Some(false)) {
         return Some(false);
@@ -143,7 +189,9 @@ pub(super) fn claims(
         let mut verdicts = Vec::new();
         let mut evidence = missing.clone();
         for (index, value) in &found {
-            let verdict = meets(statement, first, *value);
+            // The case before, where that has an answer.
+            let earlier = found.iter().find(|(other, _)| other + 1 == *index);
+            let verdict = meets(statement, first, earlier.map(|(_, v)| *v), *value);
             let word = match verdict {
                 Some(true) => "holds",
                 Some(false) => "fails",
@@ -180,7 +228,7 @@ pub(super) fn claims(
 
 #[cfg(test)]
 mod tests {
-    use super::{Quantity, Statement, meets};
+    use super::{Quantity, Statement, Trend, meets};
 
     fn statement(above: Option<f64>, below: Option<f64>, within: Option<f64>) -> Statement {
         Statement {
@@ -193,20 +241,37 @@ mod tests {
             below,
             as_first_within: within,
             apart_from_first: None,
+            column: None,
+            trend: None,
         }
     }
 
     #[test]
     fn what_an_error_leaves_open_is_open() {
         let above = statement(Some(1.0), None, None);
-        assert_eq!(meets(&above, None, (1.5, 0.1)), Some(true));
-        assert_eq!(meets(&above, None, (0.5, 0.1)), Some(false));
-        assert_eq!(meets(&above, None, (1.05, 0.1)), None);
+        assert_eq!(meets(&above, None, None, (1.5, 0.1)), Some(true));
+        assert_eq!(meets(&above, None, None, (0.5, 0.1)), Some(false));
+        assert_eq!(meets(&above, None, None, (1.05, 0.1)), None);
         let band = statement(Some(0.0), Some(1.0), None);
-        assert_eq!(meets(&band, None, (0.5, 0.1)), Some(true));
-        assert_eq!(meets(&band, None, (2.0, 0.1)), Some(false));
+        assert_eq!(meets(&band, None, None, (0.5, 0.1)), Some(true));
+        assert_eq!(meets(&band, None, None, (2.0, 0.1)), Some(false));
+        let rising = Statement {
+            trend: Some(Trend::Rising),
+            ..statement(None, None, None)
+        };
+        let step = |last, value| meets(&rising, None, Some((last, 0.1)), (value, 0.1));
+        assert_eq!(
+            [step(1.0, 2.0), step(2.0, 1.0), step(1.0, 1.15)],
+            [Some(true), Some(false), None]
+        );
         let same = statement(None, None, Some(0.01));
-        assert_eq!(meets(&same, Some((2.0, 0.0)), (2.01, 1e-3)), Some(true));
-        assert_eq!(meets(&same, Some((2.0, 0.0)), (2.1, 1e-3)), Some(false));
+        assert_eq!(
+            meets(&same, Some((2.0, 0.0)), None, (2.01, 1e-3)),
+            Some(true)
+        );
+        assert_eq!(
+            meets(&same, Some((2.0, 0.0)), None, (2.1, 1e-3)),
+            Some(false)
+        );
     }
 }
