@@ -51,6 +51,19 @@ fn shares_merged_are_the_whole() {
     let folder = folder.path();
     let whole = path(folder, "whole.csv");
     assert_eq!(with(&["--out", &whole]).status, 0);
+    let described = |table: &str| {
+        let text = fs::read_to_string(format!("{table}-metadata.json")).expect("a description");
+        let mut described: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        let url = described["url"].take();
+        assert_eq!(
+            url.as_str(),
+            Path::new(table).file_name().and_then(|n| n.to_str())
+        );
+        described
+    };
+    let about = described(&whole);
+    assert_eq!(about["tableSchema"]["columns"][2]["titles"], "c0_re");
+    assert!(about["landau:model_hash"].is_string() && about["landau:resolution"].is_number());
     let whole = fs::read(whole).expect("a table");
     // Nine chunks in fewer shares, as many, and more.
     for count in [1, 4, 9, 12] {
@@ -60,6 +73,7 @@ fn shares_merged_are_the_whole() {
         let answer = merge(&files, &out);
         assert_eq!(answer.status, 0, "{}", answer.err);
         assert!(fs::read(&out).expect("a table") == whole, "{count} shares");
+        assert_eq!(described(&out), about);
         // Once more, to the same file.
         assert_eq!(merge(&files, &out).status, 0);
     }

@@ -3,6 +3,7 @@
 use crate::arguments::{Common, Engine, MergeOptions, SweepOptions};
 use crate::asked::resumed;
 use crate::interrupt;
+use crate::picture;
 use crate::progress::Bar;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{destination, write_whole};
@@ -56,7 +57,8 @@ pub fn run_share(sweep: &Sweep, text: &str, options: &SweepOptions, common: &Com
 /// Puts shares together.
 pub fn merge(options: &MergeOptions) -> Result<()> {
     let target = destination(&options.out)?;
-    let bytes = shard::merge(&options.shards)?;
+    let merged = shard::merge(&options.shards)?;
+    let bytes = merged.table;
     let other = target.exists() && std::fs::read(&target).is_ok_and(|known| known != bytes);
     if other && !options.force {
         return Err(Error::input(format!(
@@ -65,6 +67,8 @@ pub fn merge(options: &MergeOptions) -> Result<()> {
         )));
     }
     write_whole(&target, &bytes)?;
+    let header = merged.header.iter().map(String::as_str);
+    picture::described(&target, header, &merged.facts)?;
     say!("{} shares: {}", options.shards.len(), options.out.display());
     Ok(())
 }

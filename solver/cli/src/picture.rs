@@ -2,14 +2,17 @@
 
 use crate::arguments::Common;
 use crate::asked::asked;
+use landau_report::data::csvw;
 use landau_report::data::plane::{attributes, modes as dataset};
 use landau_report::figure;
 use landau_report::figure::{Drawing, Panel, Style, atlas, is_picture, panels};
 use landau_solver::error::{Error, Result};
+use landau_solver::file::write_whole;
 use landau_solver::study::Setup;
 use landau_solver::study::modes::Modes;
 use landau_solver::study::row::{Column, Row, column};
 use landau_solver::study::sweep::Sweep;
+use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 
 /// Writes a picture where one is asked for.
@@ -73,6 +76,17 @@ pub fn modes(
         dataset(setup, &found, facts).write(path)?;
     }
     Ok(())
+}
+
+/// What the columns of a table are, beside it.
+pub fn described<'h>(
+    table: &Path,
+    header: impl Iterator<Item = &'h str>,
+    facts: &Map<String, Value>,
+) -> Result<()> {
+    let name = table.file_name().unwrap_or_default().to_string_lossy();
+    let path = table.with_file_name(csvw::beside(&name));
+    write_whole(&path, csvw::describe_sweep(&name, header, facts).as_bytes())
 }
 
 /// Rows shown of a long table.

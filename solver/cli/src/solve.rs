@@ -4,11 +4,10 @@ use crate::arguments::{Common, CriticalOptions, Of, SweepOptions, range};
 use crate::asked::{asked, resumed};
 use crate::progress::Bar;
 use crate::{cluster, interrupt, picture};
-use landau_report::data::csvw;
 use landau_report::figure;
 use landau_report::library::column;
 use landau_solver::error::{Error, Result};
-use landau_solver::file::{destination, write_whole};
+use landau_solver::file::destination;
 use landau_solver::model::{FieldId, Table};
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{Quantity, Question};
@@ -303,13 +302,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
     interrupt::keeping(&options.out);
     let rows = sweep.run_to(&options.out, &Bar::new("sweeping"), resumed)?;
     interrupt::finished();
-    let name = options
-        .out
-        .file_name()
-        .unwrap_or_default()
-        .to_string_lossy();
-    let described = options.out.with_file_name(csvw::beside(&name));
-    write_whole(&described, csvw::describe_sweep(&name, &sweep).as_bytes())?;
+    picture::described(&options.out, sweep.header(), &sweep.facts())?;
     if let Some(path) = &options.plot
         && let Some(drawn) = picture::sweep(setup, &sweep, &rows)
     {

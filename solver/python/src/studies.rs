@@ -327,7 +327,7 @@ impl Core {
     /// Puts the files of all shares together.
     #[staticmethod]
     fn merge(py: Python<'_>, shards: Vec<PathBuf>, out: PathBuf) -> PyResult<()> {
-        watched(py, |_| write_whole(&out, &merge(&shards)?))
+        watched(py, |_| write_whole(&out, &merge(&shards)?.table))
     }
 
     fn verify(

@@ -7,6 +7,7 @@ use super::sweep::{Resumed, Sweep};
 use crate::error::{Error, Result};
 use crate::file::{destination, hash, write_whole};
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -58,6 +59,8 @@ struct Shard {
     /// What the sweep was made for.
     sweep: String,
     header: Vec<String>,
+    /// What the whole was computed from.
+    facts: Map<String, Value>,
     /// Chunks of the whole.
     chunks: usize,
     share: Share,
@@ -66,15 +69,15 @@ struct Shard {
     sum: String,
 }
 
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 impl Shard {
     fn checksum(&self) -> Result<String> {
         let rows =
             serde_json::to_string(&self.rows).map_err(|e| Error::computation(e.to_string()))?;
         let text = format!(
-            "{} {:?} {} {:?} {rows}",
-            self.sweep, self.header, self.chunks, self.share
+            "{} {:?} {:?} {} {:?} {rows}",
+            self.sweep, self.header, self.facts, self.chunks, self.share
         );
         Ok(format!("{:016x}", hash(text.bytes())))
     }
@@ -134,6 +137,7 @@ impl Sweep<'_> {
             landau_shard: VERSION,
             sweep,
             header: self.header().map(str::to_owned).collect(),
+            facts: self.facts(),
             chunks: self.chunk_count(),
             share,
             rows,
@@ -147,11 +151,21 @@ impl Sweep<'_> {
     }
 }
 
-/// The table that all shares make together, as CSV.
+/// What all shares make together.
+pub struct Merged {
+    /// The table, as CSV.
+    pub table: Vec<u8>,
+    /// Names of its columns.
+    pub header: Vec<String>,
+    /// What it was computed from.
+    pub facts: Map<String, Value>,
+}
+
+/// The table that all shares make together.
 ///
 /// # Errors
 /// Names shares of different sweeps, chunks that two of them hold, and what is missing.
-pub fn merge(paths: &[PathBuf]) -> Result<Vec<u8>> {
+pub fn merge(paths: &[PathBuf]) -> Result<Merged> {
     let Some(first_path) = paths.first() else {
         return Err(Error::input("name the shares to merge"));
     };
@@ -200,7 +214,11 @@ pub fn merge(paths: &[PathBuf]) -> Result<Vec<u8>> {
         )));
     }
     let rows: Vec<Row> = rows.into_values().flat_map(|(own, _)| own).collect();
-    table(first.header.iter().map(String::as_str), &rows)
+    Ok(Merged {
+        table: table(first.header.iter().map(String::as_str), &rows)?,
+        header: first.header,
+        facts: first.facts,
+    })
 }
 
 #[cfg(test)]

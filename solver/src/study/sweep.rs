@@ -17,6 +17,7 @@ use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
 use crate::weakly::{self, Bifurcation, LandauPoint, Selection, equilibrium};
 use rayon::prelude::*;
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -308,6 +309,31 @@ impl Sweep<'_> {
             },
         };
         Ok((row, pair))
+    }
+
+    /// What its table was computed from, by name: what stands beside it.
+    pub fn facts(&self) -> Map<String, Value> {
+        let (setup, structure) = (self.setup, self.setup.model.structure());
+        let swept = |name: &str| self.ranges.iter().any(|range| range.name == name);
+        let parameters = structure.parameters.pairs();
+        let parameters: Vec<String> = parameters
+            .filter(|(_, info)| !swept(&info.name))
+            .map(|(id, info)| format!("{}={}", info.name, setup.parameters.shown(structure, id)))
+            .collect();
+        let mut facts = Map::new();
+        for (name, text) in [
+            ("title", structure.title.as_str()),
+            ("model", &structure.name),
+            ("model_hash", &setup.hash()),
+            ("parameters", &parameters.join(" ")),
+            ("normalization", &structure.amplitude.description),
+            ("version", env!("CARGO_PKG_VERSION")),
+        ] {
+            facts.insert(name.to_owned(), text.into());
+        }
+        facts.insert("resolution".to_owned(), setup.resolution.into());
+        facts.extend(self.k.map(|k| ("k".to_owned(), k.into())));
+        facts
     }
 
     /// Names of the columns: the axes, those of every row, derived ones.

@@ -1,8 +1,7 @@
 //! What a table's columns are, in a file beside it: CSV on the Web (W3C 2015), `NAME.csv-metadata.json`.
 
 use landau_solver::study::row;
-use landau_solver::study::sweep::Sweep;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 /// The name of the description of a table.
 pub fn beside(csv: &str) -> String {
@@ -62,34 +61,28 @@ pub fn describe(
     format!("{table:#}\n")
 }
 
-/// The description of a sweep's table: its axes, columns, and what the numbers were computed from.
-pub fn describe_sweep(csv: &str, sweep: &Sweep) -> String {
-    let setup = sweep.setup;
-    let structure = setup.model.structure();
-    let columns: Vec<(&str, Datatype)> = sweep
-        .header()
+/// The description of a sweep's table: its columns, and what the numbers were computed from, `title` among them.
+pub fn describe_sweep<'h>(
+    csv: &str,
+    header: impl Iterator<Item = &'h str>,
+    facts: &Map<String, Value>,
+) -> String {
+    let columns: Vec<(&str, Datatype)> = header
         .map(|name| match name {
             "bifurcation" | "status" => (name, Datatype::Text),
             name => (name, Datatype::Number),
         })
         .collect();
-    let parameters: Vec<String> = structure
-        .parameters
-        .pairs()
-        .filter(|(_, info)| sweep.ranges.iter().all(|range| range.name != info.name))
-        .map(|(id, info)| format!("{}={}", info.name, setup.parameters.shown(structure, id)))
+    let title = facts
+        .get("title")
+        .and_then(Value::as_str)
+        .unwrap_or_default();
+    let facts: Vec<(String, Value)> = facts
+        .iter()
+        .filter(|(name, _)| *name != "title")
+        .map(|(name, value)| (name.clone(), value.clone()))
         .collect();
-    let text = |name: &str, text: &str| (name.to_owned(), Value::from(text));
-    let mut facts = vec![
-        text("model", &structure.name),
-        text("model_hash", &setup.hash()),
-        text("parameters", &parameters.join(" ")),
-        text("normalization", &structure.amplitude.description),
-        text("version", env!("CARGO_PKG_VERSION")),
-        ("resolution".to_owned(), setup.resolution.into()),
-    ];
-    facts.extend(sweep.k.map(|k| ("k".to_owned(), k.into())));
-    describe(csv, &structure.title, &columns, &facts)
+    describe(csv, title, &columns, &facts)
 }
 
 /// What a column holds.
