@@ -59,9 +59,11 @@ pub fn atlas(title: &str, names: [&str; 2], axes: [&[f64]; 2], rows: &[Row]) -> 
         .with_line_width(0.3)
         .with_legend("a0");
     let mut plots: Vec<Plot> = vec![shading.into()];
-    let (vanishing, jumping) = landau.crossings();
+    let (vanishing, jumping) = landau.crossings(landau.typical());
+    // A growth rate has no poles: where modes change places it jumps, and that is a crossing all the same.
+    let (neutral, _) = growth.crossings(f64::INFINITY);
     let lines = [
-        ("a0 = 0", "#000000", growth.crossings().0),
+        ("a0 = 0", "#000000", neutral),
         ("a2 = 0", "#d55e00", vanishing),
         ("a2 jumps: resonance", "#cc79a7", jumping),
     ];
@@ -107,12 +109,16 @@ pub fn atlas(title: &str, names: [&str; 2], axes: [&[f64]; 2], rows: &[Row]) -> 
 }
 
 impl Grid<'_> {
-    /// Where the values pass through zero, and where through infinity.
-    fn crossings(&self) -> (Pieces, Pieces) {
+    /// The median of the sizes.
+    fn typical(&self) -> f64 {
         let mut sizes: Vec<f64> = self.values.iter().flatten().map(|v| v.abs()).collect();
         sizes.retain(|v| v.is_finite());
         sizes.sort_by(f64::total_cmp);
-        let typical = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+        sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// Where the values pass through zero, and where through infinity: between values that are both beyond `large`.
+    fn crossings(&self, large: f64) -> (Pieces, Pieces) {
         let (mut zero, mut infinity) = (Pieces::new(), Pieces::new());
         for j in 0..self.y.len() - 1 {
             for i in 0..self.x.len() - 1 {
@@ -126,7 +132,7 @@ impl Grid<'_> {
                     );
                     let (a, b) = (self.values[p.1][p.0], self.values[q.1][q.0]);
                     if a * b < 0.0 {
-                        let jump = a.abs().min(b.abs()) > typical;
+                        let jump = a.abs().min(b.abs()) > large;
                         let part = if jump { b / (b - a) } else { a / (a - b) };
                         let between =
                             |axis: &[f64], p: usize, q: usize| axis[p] + part * (axis[q] - axis[p]);
@@ -184,7 +190,8 @@ mod tests {
                 .map(|y| axis.iter().map(|x| f(*x, *y)).collect())
                 .collect(),
         };
-        let (zero, infinity) = over(&|x, y| x * x + y * y - 1.003).crossings();
+        let circle = over(&|x, y| x * x + y * y - 1.003);
+        let (zero, infinity) = circle.crossings(circle.typical());
         assert!(infinity.is_empty());
         let lines = joined(zero);
         assert_eq!(lines.len(), 1);
@@ -193,8 +200,13 @@ mod tests {
                 .iter()
                 .all(|(x, y)| (x.hypot(*y) - 1.0).abs() < 5e-3)
         );
-        let (zero, infinity) = over(&|x, _| 1.0 / (x - 0.33)).crossings();
+        let pole = over(&|x, _| 1.0 / (x - 0.33));
+        let (zero, infinity) = pole.crossings(pole.typical());
         assert!(zero.is_empty());
         assert!(infinity.iter().flatten().all(|p| (p.0 - 0.33).abs() < 1e-9));
+        // A step from −2 to 3 is a zero of what has no poles.
+        let step = over(&|x, _| if x < 0.33 { -2.0 } else { 3.0 });
+        assert!(step.crossings(f64::INFINITY).1.is_empty());
+        assert_eq!(joined(step.crossings(f64::INFINITY).0).len(), 1);
     }
 }

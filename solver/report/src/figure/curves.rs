@@ -35,6 +35,8 @@ pub struct Curve {
     pub points: Vec<(f64, f64)>,
     /// How it is drawn.
     pub style: Style,
+    /// Position of its colour.
+    colour: usize,
 }
 
 /// One pair of axes.
@@ -76,11 +78,23 @@ impl Panel {
 
     /// Adds a curve.
     pub fn curve(&mut self, label: &str, style: Style, points: Vec<(f64, f64)>) {
+        let colour = self.curves.last().map_or(0, |last| last.colour + 1);
+        self.add(label, style, points, colour);
+    }
+
+    /// Adds a curve in the colour of the last: the other part of the same quantity.
+    pub fn curve_beside(&mut self, label: &str, style: Style, points: Vec<(f64, f64)>) {
+        let colour = self.curves.last().map_or(0, |last| last.colour);
+        self.add(label, style, points, colour);
+    }
+
+    fn add(&mut self, label: &str, style: Style, points: Vec<(f64, f64)>, colour: usize) {
         let label = label.to_owned();
         self.curves.push(Curve {
             label,
             points,
             style,
+            colour,
         });
     }
 
@@ -218,8 +232,8 @@ impl Panel {
             let zero = LinePlot::new().with_data(vec![(low, 0.0), (high, 0.0)]);
             plots.push(zero.with_color("#999999").with_stroke_width(1.0).into());
         }
-        for (index, curve) in self.curves.iter().enumerate() {
-            let colour = COLOURS[index % COLOURS.len()];
+        for curve in &self.curves {
+            let colour = COLOURS[curve.colour % COLOURS.len()];
             for (position, run) in self.runs(curve).into_iter().enumerate() {
                 // One entry of the legend a curve.
                 let label = (position == 0 && !curve.label.is_empty()).then_some(&curve.label);

@@ -6,11 +6,12 @@ mod modes;
 mod outline;
 mod pattern;
 mod plane;
+mod raster;
 mod ticks;
 
 pub use atlas::atlas;
 pub use curves::{Curve, Panel, Style, panels};
-pub use modes::{base, critical, modes, spectrum};
+pub use modes::{POINTS, base, critical, modes, spectrum};
 pub use pattern::{Part, View, pattern_lines, pattern_pair};
 pub use plane::{Plane, planes};
 
@@ -30,9 +31,6 @@ pub struct Drawing {
     pub says: String,
 }
 
-/// Pixels of a PNG a pixel of the drawing.
-const SCALE: f32 = 1.5;
-
 impl Drawing {
     fn new(figure: kuva::prelude::Figure, says: String) -> Self {
         let scene = outline::outlined(figure.render());
@@ -41,7 +39,7 @@ impl Drawing {
 
     /// As SVG.
     pub fn svg(&self) -> String {
-        kuva::backend::svg::SvgBackend::default().render_scene(&self.scene)
+        numbered_anew(&kuva::backend::svg::SvgBackend::default().render_scene(&self.scene))
     }
 
     /// As PNG.
@@ -49,8 +47,7 @@ impl Drawing {
     /// # Errors
     /// A picture that is too large.
     pub fn png(&self) -> Result<Vec<u8>> {
-        let backend = kuva::backend::png::PngBackend::new().with_scale(SCALE);
-        let drawn = backend.render_scene(&self.scene);
+        let drawn = raster::png(&self.svg());
         drawn.map_err(|e| Error::computation(format!("the picture cannot be made: {e}")))
     }
 
@@ -67,6 +64,26 @@ impl Drawing {
     }
 }
 
+/// The plotting library counts clipped regions over all pictures of a process; here over one, so that a picture is the
+/// same whatever else was drawn.
+fn numbered_anew(svg: &str) -> String {
+    const NAME: &str = "kuva-clip-";
+    let mut parts = svg.split(NAME);
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    let mut known: Vec<&str> = Vec::new();
+    for part in parts {
+        let digits = part.len() - part.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        let (number, rest) = part.split_at(digits);
+        let position = known.iter().position(|other| *other == number);
+        let position = position.unwrap_or_else(|| {
+            known.push(number);
+            known.len() - 1
+        });
+        text += &format!("clip-{position}{rest}");
+    }
+    text
+}
+
 /// Whether a path names a format that pictures are written in.
 pub fn is_picture(path: &Path) -> bool {
     path.extension().is_some_and(|e| e == "svg" || e == "png")
@@ -77,4 +94,22 @@ fn not_a_picture(path: &Path) -> Error {
         "{}: a picture is an .svg or a .png",
         path.display()
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Panel, Style, panels};
+
+    /// A picture does not depend on those drawn before it.
+    #[test]
+    fn the_same_bytes_again() {
+        let drawn = || {
+            let mut panel = Panel::new("line", "x", "y");
+            panel.curve("", Style::Line, vec![(0.0, 0.0), (1.0, 2.0)]);
+            panels("", &[panel]).map(|drawing| drawing.svg())
+        };
+        let first = drawn();
+        assert!(first.as_ref().is_some_and(|svg| svg.contains("#clip-0)")));
+        assert_eq!(first, drawn());
+    }
 }

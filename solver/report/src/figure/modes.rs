@@ -1,39 +1,52 @@
 //! Modes over the cross-stream coordinate, spectra in the complex plane, base states.
 
-use super::{Drawing, Panel, Style, panels};
-use landau_solver::base::BaseState;
-use landau_solver::model::{C64, FieldId, Structure};
-use landau_solver::space::Place;
-use landau_solver::study::Setup;
+use super::{Drawing, Panel, Style, panels, ticks};
+use landau_solver::model::{C64, Structure};
 use landau_solver::study::critical::Scan;
 use landau_solver::study::modes::{ModeProfile, Modes};
+use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::words::short;
 
 /// Below this part of the largest value of a mode a part counts as zero.
 const NOTHING: f64 = 1e-9;
-/// Points of a base profile.
-const POINTS: usize = 401;
+/// Points of a base profile that is drawn.
+pub const POINTS: usize = 401;
 /// How far beyond the slowest eigenvalues a spectrum is drawn.
 const REACH: f64 = 12.0;
 
 /// Real or imaginary part.
 type Side = fn(&C64) -> f64;
 
-/// One panel a mode: real parts as lines, imaginary parts dashed.
+/// One panel a mode: real parts as lines, imaginary parts dashed, each field over its largest modulus, which the legend
+/// says: a pressure would flatten all others.
 pub fn modes(structure: &Structure, found: &Modes) -> Option<Drawing> {
     let vertical = structure.coordinate.as_deref()?;
     let panel = |profile: &ModeProfile| {
         let mut panel = Panel::new(&profile.name, vertical, "");
-        let sizes = profile.values.iter().flatten().map(|v| v.norm());
-        let largest = sizes.fold(0.0, f64::max);
+        let size = |values: &[C64]| values.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let largest = profile.values.iter().map(|v| size(v)).fold(0.0, f64::max);
         for (part, values) in profile.parts.iter().zip(&profile.values) {
-            let sides: [(&str, Style, Side); 2] =
-                [("", Style::Line, |v| v.re), ("i ", Style::Dashed, |v| v.im)];
-            for (unit, style, of) in sides {
-                if values.iter().any(|v| of(v).abs() > NOTHING * largest) {
-                    let points = found.heights.iter().copied().zip(values.iter().map(of));
-                    panel.curve(&format!("{unit}{part}"), style, points.collect());
+            let size = size(values);
+            if size <= NOTHING * largest {
+                continue;
+            }
+            let scaled = |of: Side| {
+                let values = values.iter().map(|v| of(v) / size);
+                found.heights.iter().copied().zip(values).collect()
+            };
+            let seen = |of: Side| values.iter().any(|v| of(v).abs() > NOTHING * size);
+            let divided = format!("{part} / {}", ticks::size(size));
+            match (seen(|v| v.re), seen(|v| v.im)) {
+                (true, both) => {
+                    panel.curve(&divided, Style::Line, scaled(|v| v.re));
+                    if both {
+                        let label = format!("i {part}");
+                        panel.curve_beside(&label, Style::Dashed, scaled(|v| v.im));
+                    }
+                }
+                (false, _) => {
+                    panel.curve(&format!("i {divided}"), Style::Dashed, scaled(|v| v.im));
                 }
             }
         }
@@ -64,29 +77,18 @@ pub fn spectrum(found: &SpectrumReport) -> Option<Drawing> {
     panels("", &[panel])
 }
 
-/// One panel a field.
-pub fn base(setup: &Setup, state: &BaseState) -> Option<Drawing> {
-    let structure = setup.model.structure();
-    let vertical = structure.coordinate.as_deref()?;
-    let places = state.space.evenly(POINTS);
-    let points: Vec<Vec<f64>> = places.iter().map(|&place| state.at(place, 0.0)).collect();
-    let profiles = structure.profiles();
-    let panel = |field: FieldId| {
-        let name = &structure.fields[field].name;
+/// One panel a field; unknown numbers are none.
+pub fn base(found: &BaseReport) -> Option<Drawing> {
+    let vertical = found.coordinate.as_deref()?;
+    let panel = |(name, values): &(String, Vec<f64>)| {
         let mut panel = Panel::new(name, vertical, name);
-        let value = |(place, point): (&Place, &Vec<f64>)| {
-            let y = state.space.y(*place);
-            (y, structure.base_value(point, field, 0))
-        };
-        panel.curve(
-            "",
-            Style::Line,
-            places.iter().zip(&points).map(value).collect(),
-        );
+        let points = found.heights.iter().copied().zip(values.iter().copied());
+        panel.curve("", Style::Line, points.collect());
         panel
     };
+    let profiles = found.profiles.iter().take(found.varying);
     let drawn: Vec<Panel> = profiles.map(panel).collect();
-    panels(&format!("{}: base state", structure.title), &drawn)
+    panels(&format!("{}: base state", found.title), &drawn)
 }
 
 /// A quantity over the range in which it was asked to vanish, and where it does.

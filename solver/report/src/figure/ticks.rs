@@ -23,6 +23,16 @@ pub(super) fn logarithmic(smallest: f64, largest: f64) -> TickFormat {
     }
 }
 
+/// A size in a legend: three digits.
+pub(super) fn size(value: f64) -> String {
+    let text = format!("{value:.2e}");
+    let rounded = text.parse().unwrap_or(value);
+    match (1e-3..1e4).contains(&rounded) {
+        true => decimal(rounded),
+        false => scientific(rounded),
+    }
+}
+
 /// 0.05, with no more digits than it has.
 fn decimal(value: f64) -> String {
     let text = format!("{value:.6}");
@@ -67,7 +77,7 @@ fn raised(digits: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{decimal, power_of_ten, scientific};
+    use super::{decimal, power_of_ten, scientific, size};
 
     #[test]
     fn numbers_in_one_style() {
@@ -78,6 +88,10 @@ mod tests {
         assert_eq!(
             [2e-5, 1e-5, -3e7].map(scientific),
             ["2·10⁻⁵", "10⁻⁵", "−3·10⁷"]
+        );
+        assert_eq!(
+            [1.3912, 0.052_345, 9.876e-5].map(size),
+            ["1.39", "0.0523", "9.88·10⁻⁵"]
         );
         assert_eq!([1e-3, 2e-3, 10.0].map(power_of_ten), ["10⁻³", "", "10¹"]);
     }
