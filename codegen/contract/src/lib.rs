@@ -6,6 +6,7 @@
 #![warn(missing_docs)]
 
 mod expression;
+mod greek;
 mod ids;
 mod jet;
 mod kernel;
@@ -19,6 +20,7 @@ mod structure;
 mod tape;
 
 pub use expression::Expression;
+pub use greek::{greek, small_greek};
 pub use ids::{BalanceId, BaseRowId, CaseId, FieldId, Id, LawId, ParameterId, SolvedId, Table};
 pub use jet::{End, Function, Jet, Operator, jet};
 pub use kernel::{

@@ -2,6 +2,7 @@
 
 use super::{Binding, Formula, Mark, signed_sum};
 use crate::graph::Rational;
+use landau_contract::{greek, small_greek};
 use num_traits::Signed;
 
 /// Names that LaTeX has a letter for.
@@ -16,9 +17,36 @@ pub(crate) fn is_greek(name: &str) -> bool {
     GREEK.contains(&name)
 }
 
-/// Words as LaTeX sets them inside a formula.
+/// Words as LaTeX sets them inside a formula; what is no Latin letter is set between them.
 pub fn latex_words(text: &str) -> String {
-    format!("\\text{{{}}}", text.replace('_', " "))
+    let mut set = String::new();
+    let mut words = String::new();
+    let end = |words: &mut String, set: &mut String| {
+        if !words.is_empty() {
+            *set += &format!("\\text{{{words}}}");
+            words.clear();
+        }
+    };
+    for letter in text.chars() {
+        let command = match letter {
+            '→' => Some("\\to".to_owned()),
+            '†' => Some("{}^{\\dagger}".to_owned()),
+            '_' => {
+                words.push(' ');
+                continue;
+            }
+            letter => greek_command(letter),
+        };
+        match command {
+            Some(command) => {
+                end(&mut words, &mut set);
+                set += &command;
+            }
+            None => words.push(letter),
+        }
+    }
+    end(&mut words, &mut set);
+    set
 }
 
 /// n^{0}_{y} v^{\prime} + \tfrac{1}{2} \sqrt{T^{0}}
@@ -151,18 +179,40 @@ fn superscript(power: u8) -> String {
 /// A name as a letter: Greek, one letter, or upright; digits at its end below it.
 fn letter(name: &str) -> String {
     let (stem, digits) = name.split_at(name.trim_end_matches(|c: char| c.is_ascii_digit()).len());
+    let mut characters = stem.chars();
     let stem = if is_greek(stem) {
         format!("\\{stem}")
-    } else if stem.chars().count() == 1 {
-        stem.to_owned()
-    } else if stem == "π" {
-        "\\pi".to_owned()
+    } else if let (Some(only), None) = (characters.next(), characters.next()) {
+        greek_command(only).unwrap_or_else(|| stem.to_owned())
     } else {
         format!("\\mathrm{{{}}}", stem.replace('_', "\\_"))
     };
     match digits {
         "" => stem,
         digits => format!("{stem}_{{{digits}}}"),
+    }
+}
+
+/// The command of a Greek letter that is no Latin one.
+fn greek_command(letter: char) -> Option<String> {
+    const CURLY: [(char, &str); 4] = [
+        ('ε', "varepsilon"),
+        ('φ', "varphi"),
+        ('ϑ', "vartheta"),
+        ('ς', "varsigma"),
+    ];
+    let name = match CURLY.iter().find(|(other, _)| *other == letter) {
+        Some((_, name)) => *name,
+        None => greek(letter).filter(|name| is_greek(name))?,
+    };
+    match small_greek(letter) {
+        Some(_) => Some(format!("\\{name}")),
+        // Capitals that look like Latin ones have no command.
+        None if "ΓΔΘΛΞΠΣΥΦΨΩ".contains(letter) => {
+            let (first, rest) = name.split_at(1);
+            Some(format!("\\{}{rest}", first.to_uppercase()))
+        }
+        None => None,
     }
 }
 
@@ -201,4 +251,33 @@ fn call(function: &str, argument: &Formula) -> String {
         },
     };
     format!("{name}{}", bracketed(&latex(argument)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{latex_words, letter};
+
+    #[test]
+    fn letters() {
+        let found = ["phi", "φ", "ϕ2", "Γ", "Α", "theta_w", "eta1"].map(letter);
+        let expected = [
+            "\\phi",
+            "\\varphi",
+            "\\phi_{2}",
+            "\\Gamma",
+            "Α",
+            "\\mathrm{theta\\_w}",
+            "\\eta_{1}",
+        ];
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn words() {
+        assert_eq!(latex_words("order_of"), "\\text{order of}");
+        assert_eq!(
+            latex_words("L†: ξ → y"),
+            "\\text{L}{}^{\\dagger}\\text{: }\\xi\\text{ }\\to\\text{ y}"
+        );
+    }
 }

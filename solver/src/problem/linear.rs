@@ -286,6 +286,36 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
         sums
     }
 
+    /// What a column of a given size adds at most to each row and then to each wall of L − c M0:
+    /// Σ |coefficient| |k|^a (2/h)^d |c|^t size.
+    pub fn shares(&self, k: f64, c: C64, sizes: &Table<Column, f64>) -> Vec<Table<Column, f64>> {
+        let size = |jet: &Jet<Column>| {
+            let symbol = k.abs().powi(i32::from(jet.x + jet.absx));
+            let slope = self.space.rate().powi(i32::from(jet.y));
+            sizes.find(jet.of).map_or(0.0, |size| {
+                size * symbol * slope * c.norm().powi(i32::from(jet.t))
+            })
+        };
+        let mut shares = vec![sizes.map(|_| 0.0); self.layout.rows.len() + self.walls.len()];
+        for term in &self.terms {
+            let largest = term
+                .coefficients
+                .iter()
+                .fold(0.0, |m: f64, c| m.max(c.abs()));
+            if sizes.find(term.jet.of).is_some() {
+                shares[term.row.index()][term.jet.of] += largest * size(&term.jet);
+            }
+        }
+        for (index, wall) in self.walls.iter().enumerate() {
+            for (jet, coefficient) in &wall.linear {
+                if sizes.find(jet.of).is_some() {
+                    shares[self.layout.rows.len() + index][jet.of] += coefficient.abs() * size(jet);
+                }
+            }
+        }
+        shares
+    }
+
     /// Whether a row holds the time derivative of a column.
     pub(super) fn has_mass(&self, row: Row, column: Column) -> bool {
         let mut own = self.terms.iter().filter(|term| term.row == row);

@@ -11,12 +11,14 @@ mod closure;
 mod conditions;
 mod linear;
 mod mirror;
+mod presence;
 
 pub use basis::{Profile, Turn, Turned};
 pub use block::Blocks;
 pub use closure::Border;
 pub use linear::{Adjoint, Combination, Direct, LinearProblem, WallRow, symbol};
 pub use mirror::Solver;
+pub use presence::Known;
 
 use crate::base::BaseState;
 use crate::error::{Error, Result};

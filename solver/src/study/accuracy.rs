@@ -25,6 +25,15 @@ const SAFETY: f64 = 5.0;
 /// that rounding leaves standing.
 pub const SINGULAR: f64 = 1e-8;
 
+/// A coefficient whose error is a larger part of it is no answer, unless it is a computed zero.
+pub const UNCONVERGED: f64 = 0.05;
+/// Below this part of what it is the sum of, a coefficient counts as a computed zero.
+const CANCELLED: f64 = 1e-6;
+/// An error that is a larger part of c2 may be that of a c2 of rounding alone.
+const SUSPECT: f64 = 1e-4;
+/// Of what c2 would be the sum of, did nothing cancel: the rounding.
+const ROUNDING: f64 = 1e-13;
+
 /// Absolute errors of c0 and c2.
 #[derive(Clone, Copy, Debug)]
 pub struct Accuracy {
@@ -123,6 +132,22 @@ pub fn resonance(point: &LandauPoint) -> Result<Resonance> {
         mean_flow,
         second_harmonic: second.distance(2.0 * point.c0),
     })
+}
+
+/// Whether an error leaves a coefficient of some size standing; `sum` is what its terms have the size of.
+pub fn stands(error: f64, size: f64, sum: f64) -> bool {
+    error <= (UNCONVERGED * size).max(CANCELLED * sum)
+}
+
+/// The error of c2, rounding where products cancel included; nothing where it leaves no c2 standing.
+pub fn landau_error(point: &LandauPoint, error: f64) -> Option<f64> {
+    let size = point.c2.norm();
+    if size > 0.0 && error <= SUSPECT * size {
+        return Some(error);
+    }
+    let sum = point.uncancelled();
+    let error = error.max(ROUNDING * sum);
+    stands(error, size, sum).then_some(error)
 }
 
 /// What a distance from singularity is small or large against: the slow eigenvalues, or the terms of the slowest

@@ -1,6 +1,8 @@
 //! A Landau point with everything that it rests on: what `point` prints.
 
-use super::accuracy::{Accuracy, Resonance, SINGULAR, accuracy, resonance, slow_rate};
+use super::accuracy::{
+    Accuracy, Resonance, SINGULAR, accuracy, landau_error, resonance, slow_rate, stands,
+};
 use super::amplitudes::{NAMED, errors, small_divisors};
 use super::orders::check_order;
 use super::{Setup, check_wavenumber, sensitivity};
@@ -15,11 +17,6 @@ use crate::weakly::{
 use crate::words;
 use serde_json::{Map, Value, json};
 use std::fmt;
-
-/// A coefficient whose error is a larger part of it is no answer.
-pub const UNCONVERGED: f64 = 0.05;
-/// Below this part of what it is the sum of, a coefficient counts as a computed zero.
-const CANCELLED: f64 = 1e-6;
 
 /// c0, c2 and what belongs to them at one wavenumber; owns its data.
 #[derive(Clone, Debug)]
@@ -79,8 +76,7 @@ impl PointReport {
         let structure = setup.model.structure();
         let resonance = resonance(point)?;
         check_distances(point, &resonance)?;
-        let error = accuracy(setup, point)?;
-        check_errors(setup, point, &error)?;
+        let error = standing(setup, point, accuracy(setup, point)?)?;
         let mut values = Vec::new();
         for (info, value) in structure.outputs.iter().zip(outputs(point)) {
             if !value.iter().all(|v| v.is_finite()) {
@@ -241,11 +237,14 @@ fn longer(
     for (term, error) in system.equations[0].iter().zip(&errors[0]).skip(2) {
         let degree = term.monomial.degree();
         let name = format!("c{}", degree - 1);
+        let size = term.g.norm();
         // Where it cancels, of the size that c2 and the slow rates give it.
-        let sum = point.size() * (point.size() / point.pair.scale).powi(degree as i32 / 2 - 1);
-        let allowed = (UNCONVERGED * term.g.norm()).max(CANCELLED * sum);
-        if error.is_nan() || *error > allowed {
-            return Err(unconverged(setup, &name, *error, term.g.norm()));
+        let cancelling = || {
+            let sum = point.uncancelled();
+            sum * (sum / point.pair.scale).powi(degree as i32 / 2 - 1)
+        };
+        if !(stands(*error, size, 0.0) || stands(*error, size, cancelling())) {
+            return Err(unconverged(setup, &name, *error, size));
         }
         equation.coefficients.push(term.g);
         equation.errors.push(*error);
@@ -287,20 +286,16 @@ fn check_distances(point: &LandauPoint, resonance: &Resonance) -> Result<()> {
     Ok(())
 }
 
-/// An error of the size of its coefficient is no answer, unless the coefficient is a computed zero.
-fn check_errors(setup: &Setup, point: &LandauPoint, error: &Accuracy) -> Result<()> {
-    let scale = point.pair.scale;
-    let judged = [
-        ("c0", error.c0, point.c0.norm(), scale),
-        ("c2", error.c2, point.c2.norm(), point.size()),
-    ];
-    for (name, error, size, sum) in judged {
-        if error <= (UNCONVERGED * size).max(CANCELLED * sum) {
-            continue;
-        }
-        return Err(unconverged(setup, name, error, size));
+/// The errors of coefficients that they leave standing.
+fn standing(setup: &Setup, point: &LandauPoint, error: Accuracy) -> Result<Accuracy> {
+    let size = point.c0.norm();
+    if !stands(error.c0, size, point.pair.scale) {
+        return Err(unconverged(setup, "c0", error.c0, size));
     }
-    Ok(())
+    match landau_error(point, error.c2) {
+        Some(c2) => Ok(Accuracy { c2, ..error }),
+        None => Err(unconverged(setup, "c2", error.c2, point.c2.norm())),
+    }
 }
 
 /// What to say of a coefficient that is not converged.

@@ -1,7 +1,7 @@
 //! The spectrum of L beside that of L†, with what tells them apart: what `spectrum` prints.
 
 use super::Setup;
-use super::point::UNCONVERGED;
+use super::accuracy::UNCONVERGED;
 use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::problem::Problem;

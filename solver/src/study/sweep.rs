@@ -4,9 +4,9 @@
 //! two ends (the more unstable one leads) and follows it by shape, so a row does not depend on how
 //! many threads there are, or on where an earlier run was interrupted.
 
+use super::accuracy::{landau_error, stands};
 use super::derived::Derived;
 use super::journal::Journal;
-use super::point::UNCONVERGED;
 use super::row::{COLUMNS, Row, table};
 use super::{Axis, Carried, Progress, Setup};
 use crate::base::BaseState;
@@ -401,11 +401,9 @@ fn row(collocations: &Collocations, place: &[f64], point: &LandauPoint) -> Resul
     let [error0, error2] = collocations.errors(point);
     let scale = point.pair.scale.max(point.c0.norm());
     let [mean_flow, second_harmonic] = point.distances().map(|d| Some(d).filter(|d| d.is_finite()));
-    let judged = |c: C64, error: f64, sum: f64| error <= (UNCONVERGED * c.norm()).max(1e-6 * sum);
-    let (good0, good2) = (
-        judged(point.c0, error0, scale),
-        judged(point.c2, error2, point.size()),
-    );
+    let standing = landau_error(point, error2);
+    let (good0, good2) = (stands(error0, point.c0.norm(), scale), standing.is_some());
+    let error2 = standing.unwrap_or(error2);
     let near = |d: Option<f64>| d.is_some_and(|d| d <= RESONANT * scale);
     let status = if !good0 {
         "c0 is not converged: a larger M".to_owned()

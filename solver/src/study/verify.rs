@@ -256,8 +256,7 @@ fn routes(point: &LandauPoint) -> Result<Vec<Check>> {
     } else {
         1e-4
     };
-    // Relative to what c2 is the sum of: it may vanish itself.
-    let size = point.size().max(f64::MIN_POSITIVE);
+    let size = landau_size(point);
     match second_landau(point, &adjoint)? {
         Some(c2) => {
             let difference = (c2 - point.c2).norm() / size;
@@ -292,6 +291,13 @@ fn routes(point: &LandauPoint) -> Result<Vec<Check>> {
     Ok(checks)
 }
 
+/// What differences of c2 are relative to: what it is the sum of, for it may vanish itself; where that vanishes too, a
+/// part of what it would be did products not cancel.
+fn landau_size(point: &LandauPoint) -> f64 {
+    let uncancelled = 1e-8 * point.uncancelled();
+    point.size().max(uncancelled).max(f64::MIN_POSITIVE)
+}
+
 /// Part 5: M against 3M/2, tails, distances from singularity, multipliers.
 fn convergence(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
     let mut checks = Vec::new();
@@ -316,7 +322,7 @@ fn convergence(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
     checks.push(Check::below(
         5,
         "error of c2, relative",
-        error.c2 / point.size().max(f64::MIN_POSITIVE),
+        error.c2 / landau_size(point),
         1e-3,
         detail,
     ));

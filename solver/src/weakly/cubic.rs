@@ -7,17 +7,23 @@
 //! [2 c0 M0 − L_2k] X[2;2] = N2(X, X)
 //! c2 = ⟨Y, 2 N2(X, X[0;2]) + 2 N2(X̄, X[2;2]) + 3 N3(X, X, X̄)⟩ / ⟨Y, M0 X⟩, P (3.22)
 
-use super::bifurcation::{Bifurcation, equilibrium};
+use super::bifurcation::equilibrium;
 use super::mode::{JetTable, Mode};
 use super::response::{Multiplier, Question, Response, arithmetic};
 use crate::error::{Error, Result};
-use crate::model::{C64, Jet};
+use crate::model::{C64, Id, Jet};
 use crate::numerics::Applied;
 use crate::numerics::dense::dot;
 use crate::problem::{Problem, Turned};
 use crate::space::Points;
 use crate::spectrum::{self, EigenPair};
 use std::sync::Arc;
+
+/// Below this part of what its terms would sum to were they not to cancel, c2 is rounding.
+const CANCELLED: f64 = 1e-13;
+
+/// The factor of a jet.
+type Weight = fn(Jet) -> f64;
 
 /// Which mode is meant.
 #[derive(Clone, Copy, Debug)]
@@ -87,6 +93,37 @@ pub fn warm_point(problem: &Arc<Problem>, k: f64, near: &EigenPair) -> Result<La
 /// A resonance.
 pub fn from_pair(problem: &Arc<Problem>, pair: EigenPair) -> Result<LandauPoint> {
     let fundamental = fundamental(problem, &pair)?;
+    let third = third_order(problem, &pair, &fundamental, None)?;
+    let [mean, second] = &third.responses;
+    Ok(LandauPoint {
+        problem: problem.clone(),
+        c0: pair.c,
+        c2: third.contributions.iter().sum(),
+        contributions: third.contributions,
+        fundamental,
+        mean: mean.mode.clone(),
+        second: second.mode.clone(),
+        multipliers: mean.multipliers.clone(),
+        responses: third.responses,
+        pair,
+    })
+}
+
+/// What the fundamental makes at second and third order.
+struct ThirdOrder {
+    /// X[0;2] and X[2;2].
+    responses: [Response; 2],
+    /// What c2 is the sum of.
+    contributions: [C64; 3],
+}
+
+/// The mode's products with itself, each jet times its weight where there are weights.
+fn third_order(
+    problem: &Problem,
+    pair: &EigenPair,
+    fundamental: &Mode,
+    weight: Option<Weight>,
+) -> Result<ThirdOrder> {
     let respond = |q: f64, shift: C64, forcing: Turned| {
         let question = Question {
             q,
@@ -101,14 +138,14 @@ pub fn from_pair(problem: &Arc<Problem>, pair: EigenPair) -> Result<LandauPoint>
             .answer(problem)
             .ok_or_else(|| singular(pair.k, q == 0.0))
     };
-    let x = Factor::new(problem, fundamental.clone());
+    let x = Factor::new(problem, fundamental.clone(), weight);
     let conjugate = x.conjugate();
     let forcing = product(problem, &[&x, &conjugate], 2.0);
     let mean = respond(0.0, C64::new(2.0 * pair.c.re, 0.0), forcing)?;
     let forcing = product(problem, &[&x, &x], 1.0);
     let second = respond(2.0 * pair.k, 2.0 * pair.c, forcing)?;
-    let x02 = Factor::new(problem, mean.mode.clone());
-    let x22 = Factor::new(problem, second.mode.clone());
+    let x02 = Factor::new(problem, mean.mode.clone(), weight);
+    let x22 = Factor::new(problem, second.mode.clone(), weight);
     let third = [
         product(problem, &[&x, &x02], 2.0),
         product(problem, &[&conjugate, &x22], 2.0),
@@ -117,18 +154,9 @@ pub fn from_pair(problem: &Arc<Problem>, pair: EigenPair) -> Result<LandauPoint>
     let mass = problem.direct.mass::<C64>(pair.k);
     let mass_x = mass.apply(&problem.direct.turned(&fundamental.values));
     let below = dot(&pair.left, &mass_x);
-    let contributions = third.map(|forcing| dot(&pair.left, &forcing) / below);
-    Ok(LandauPoint {
-        problem: problem.clone(),
-        c0: pair.c,
-        c2: contributions.iter().sum(),
-        contributions,
-        fundamental,
-        mean: mean.mode.clone(),
-        second: second.mode.clone(),
-        multipliers: mean.multipliers.clone(),
+    Ok(ThirdOrder {
+        contributions: third.map(|forcing| dot(&pair.left, &forcing) / below),
         responses: [mean, second],
-        pair,
     })
 }
 
@@ -175,40 +203,70 @@ impl LandauPoint {
         self.contributions.iter().map(|c| c.norm()).sum()
     }
 
+    /// The same where products cancel before they are summed, as those of a mode that solves the nonlinear equations by
+    /// itself do: of the size that they have with every jet at another weight. It costs as much as the point.
+    pub fn uncancelled(&self) -> f64 {
+        let scrambled = third_order(
+            &self.problem,
+            &self.pair,
+            &self.fundamental,
+            Some(scrambled),
+        );
+        let sum = |found: ThirdOrder| found.contributions.iter().map(|c| c.norm()).sum();
+        self.size().max(scrambled.map_or(0.0, sum))
+    }
+
     /// A_e² = −a0/a2 where that is positive, P (4.1).
     pub fn amplitude(&self) -> Option<f64> {
-        let floor = self.rounding();
-        equilibrium((self.c0, floor[0]), (self.c2, floor[1]))
+        let [c0, _] = self.rounding();
+        equilibrium((self.c0, c0), (self.c2, CANCELLED * self.uncancelled()))
     }
 
-    /// The kind of bifurcation, rounding set aside.
-    pub fn bifurcation(&self) -> Bifurcation {
-        let floor = self.rounding();
-        Bifurcation::new((self.c0, floor[0]), (self.c2, floor[1]))
-    }
-
-    /// What rounding leaves undecided of c0 and c2 at least.
+    /// What rounding leaves undecided of c0 and c2 at least, where products do not cancel.
     pub fn rounding(&self) -> [f64; 2] {
         let scale = self.pair.scale.max(self.c0.norm());
         [1e-14 * scale, 1e-14 * self.size()]
     }
 }
 
+/// Factors between 1/2 and 3/2 that have nothing to do with each other.
+fn scrambled(jet: Jet) -> f64 {
+    let orders = [jet.x, jet.absx, jet.y, jet.t].map(usize::from);
+    let number = orders
+        .iter()
+        .fold(jet.of.index(), |sum, order| 5 * sum + order);
+    0.5 + (0.618_033_988_75 * (number + 1) as f64).fract()
+}
+
 /// A mode that takes part in products, with its jets at the points of all balances.
 struct Factor {
     mode: Mode,
     tables: Vec<(Points, JetTable)>,
+    weight: Option<Weight>,
 }
 
 impl Factor {
-    fn new(problem: &Problem, mode: Mode) -> Self {
+    fn new(problem: &Problem, mode: Mode, weight: Option<Weight>) -> Self {
         let jets = &problem.structure().form_jets;
         let groups = problem.direct.layout.groups().into_iter();
-        let tables = groups.map(|(points, _)| (points, mode.jets(problem, jets, points)));
+        let table = |points| {
+            let mut table = mode.jets(problem, jets, points);
+            if let Some(weight) = weight {
+                table.weigh(|position| weight(jets[position]));
+            }
+            (points, table)
+        };
         Factor {
-            tables: tables.collect(),
+            tables: groups.map(|(points, _)| table(points)).collect(),
             mode,
+            weight,
         }
+    }
+
+    /// One jet at one end.
+    fn at_end(&self, problem: &Problem, jet: Jet, end: Points) -> C64 {
+        let value = self.mode.jet(problem, jet, end)[0];
+        self.weight.map_or(value, |weight| value * weight(jet))
     }
 
     fn conjugate(&self) -> Self {
@@ -216,6 +274,7 @@ impl Factor {
         Factor {
             mode: self.mode.conjugate(),
             tables: tables.map(|(at, t)| (*at, t.conjugate())).collect(),
+            weight: self.weight,
         }
     }
 
@@ -269,11 +328,7 @@ fn symmetric_product(problem: &Problem, factors: &[&Factor], monomial: &[Jet], e
         open.map(|i| values[position][i] * sum(values, position + 1, used | 1 << i))
             .sum()
     }
-    let at_end = |jet: Jet| {
-        factors
-            .iter()
-            .map(move |f| f.mode.jet(problem, jet, end)[0])
-    };
+    let at_end = |jet: Jet| factors.iter().map(move |f| f.at_end(problem, jet, end));
     let values: Vec<Vec<C64>> = monomial.iter().map(|&jet| at_end(jet).collect()).collect();
     let factorial: f64 = (1..=factors.len()).map(|i| i as f64).product();
     sum(&values, 0, 0) / factorial

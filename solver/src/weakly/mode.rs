@@ -148,6 +148,13 @@ impl JetTable {
         &self.values[point * self.jets..][..self.jets]
     }
 
+    /// Multiplies each jet, by its position, by a factor of its own.
+    pub fn weigh(&mut self, factor: impl Fn(usize) -> f64) {
+        for (position, value) in self.values.iter_mut().enumerate() {
+            *value *= factor(position % self.jets);
+        }
+    }
+
     /// The jets of the conjugate mode.
     pub fn conjugate(&self) -> JetTable {
         JetTable {

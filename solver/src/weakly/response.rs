@@ -4,7 +4,7 @@
 use super::mode::Mode;
 use crate::model::{C64, ClosureKind, FieldId};
 use crate::numerics::dense::{Scalar, bordered, norm, scalars};
-use crate::problem::{Problem, Profile, Solver, Turned};
+use crate::problem::{Known, Problem, Profile, Solver, Turned};
 use crate::series::Arithmetic;
 
 /// The multiplier of a closure of a mean mode.
@@ -142,11 +142,16 @@ impl Question<'_> {
             }
         };
         let solution = solver.solve(&right)?;
+        let mut known = Known::forcing(problem, &self.forcing);
+        for ((column, _), value) in self.borders.iter().zip(&solution[closed..]) {
+            known.add(problem, column, value.size());
+        }
         let mut multipliers = Vec::new();
         let size = norm(&self.forcing);
         let mut drift: Option<Profile> = None;
         let mut numbers: Vec<(FieldId, C64)> = Vec::new();
         for (border, value) in problem.borders.iter().zip(&solution[n..closed]) {
+            known.add(problem, &border.column, value.size());
             let share = norm(&border.column) * value.size();
             let relative = if share == 0.0 { 0.0 } else { share / size };
             if border.kind != ClosureKind::Unknown {
@@ -171,7 +176,9 @@ impl Question<'_> {
                 ClosureKind::Conserved | ClosureKind::Claimed | ClosureKind::Gauge => {}
             }
         }
-        let values = problem.direct.physical(&solution[..n]);
+        let mut values = Turned(solution[..n].to_vec()).complex();
+        problem.clear_absent(self.q, self.shift, &mut values, known);
+        let values = problem.direct.physical(&values);
         let mut rate = values.times(self.shift);
         if let Some(drift) = &drift {
             rate.add(C64::new(1.0, 0.0), drift);

@@ -1,0 +1,48 @@
+//! Greek letters by name, for what takes no others than Latin ones.
+
+const SMALL: [(char, &str); 29] = [
+    ('α', "alpha"),
+    ('β', "beta"),
+    ('γ', "gamma"),
+    ('δ', "delta"),
+    ('ε', "epsilon"),
+    ('ϵ', "epsilon"),
+    ('ζ', "zeta"),
+    ('η', "eta"),
+    ('θ', "theta"),
+    ('ϑ', "theta"),
+    ('ι', "iota"),
+    ('κ', "kappa"),
+    ('λ', "lambda"),
+    ('μ', "mu"),
+    // The sign of a millionth.
+    ('µ', "mu"),
+    ('ν', "nu"),
+    ('ξ', "xi"),
+    ('ο', "omicron"),
+    ('π', "pi"),
+    ('ρ', "rho"),
+    ('σ', "sigma"),
+    ('ς', "sigma"),
+    ('τ', "tau"),
+    ('υ', "upsilon"),
+    ('φ', "phi"),
+    ('ϕ', "phi"),
+    ('χ', "chi"),
+    ('ψ', "psi"),
+    ('ω', "omega"),
+];
+
+/// The name of a small letter.
+pub fn small_greek(letter: char) -> Option<&'static str> {
+    let found = SMALL.iter().find(|(other, _)| *other == letter);
+    found.map(|(_, name)| *name)
+}
+
+/// The name of a small letter, or of the small one of a capital.
+pub fn greek(letter: char) -> Option<&'static str> {
+    small_greek(letter).or_else(|| {
+        let mut small = letter.to_lowercase();
+        small.next().and_then(small_greek)
+    })
+}

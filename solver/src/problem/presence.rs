@@ -1,0 +1,111 @@
+//! Which fields a mode has: what rounding leaves of the others in its vector is put to zero.
+//!
+//! A wave of one velocity component alone, say, knows nothing of the others, and every product with them vanishes; a
+//! force that is a gradient makes a pressure and no flow. Left as noise, such fields would make a c2 of noise, for
+//! which no resolution is enough.
+
+use super::Problem;
+use crate::model::{C64, FieldId, Table};
+use crate::numerics::Applied;
+use crate::numerics::dense::Scalar;
+use crate::space::Block;
+
+/// Rounding errors of a solved field, relative to what it is solved from: ε M³ by observation (second derivatives near
+/// the walls), with a factor of some ten.
+const ROUNDING: f64 = f64::EPSILON;
+
+/// Terms of the rows, balances and then walls, from which fields are told to be there.
+pub struct Known {
+    /// Fields that are there for certain.
+    pub fields: Vec<FieldId>,
+    /// What rows hold besides fields: the size of a forcing.
+    pub rows: Vec<f64>,
+}
+
+impl Problem {
+    /// Puts to zero, in a vector of the solver's basis, fields that count in no row to which something else contributes:
+    /// known fields, a forcing, or fields that count next to these.
+    pub fn clear_absent(&self, k: f64, shift: C64, values: &mut [C64], known: Known) {
+        let columns = &self.direct.layout.columns;
+        let largest = columns.map(|block| largest(block.of(values)));
+        let shares = self.direct.shares(k, shift, &largest);
+        let present = self.present(known, &shares);
+        for (field, block) in columns.pairs() {
+            if !present.contains(&field) {
+                values[block.range()].fill(C64::new(0.0, 0.0));
+            }
+        }
+    }
+
+    /// The field that an eigenvector has for certain: the one with the largest part of yᴴ M0 x, whatever the units.
+    pub fn carrier(&self, k: f64, right: &[C64], left: &[C64]) -> Known {
+        let weights = self.direct.mass::<C64>(k).apply_adjoint(left);
+        let part = |block: &Block| -> f64 {
+            let pairs = block.of(&weights).iter().zip(block.of(right));
+            pairs.map(|(w, x)| w.norm() * x.norm()).sum()
+        };
+        let parts = self.direct.layout.columns.pairs();
+        let parts = parts.map(|(field, block)| (field, part(block)));
+        let most = parts.max_by(|a, b| a.1.total_cmp(&b.1));
+        Known {
+            fields: most.map(|(field, _)| field).into_iter().collect(),
+            rows: vec![0.0; self.direct.layout.rows.len() + self.direct.walls.len()],
+        }
+    }
+
+    /// The known fields with all that count beside them, row by row.
+    fn present(&self, known: Known, shares: &[Table<FieldId, f64>]) -> Vec<FieldId> {
+        let resolution = self.resolution.unwrap_or(5).max(5) as f64;
+        let noise = ROUNDING * resolution.powi(3);
+        let Known { mut fields, rows } = known;
+        loop {
+            // Beside what is known, in the row in which it counts most.
+            let weight = |field: FieldId| {
+                let parts = rows.iter().zip(shares).map(|(forcing, row)| {
+                    let beside = forcing + fields.iter().map(|&f| row[f]).sum::<f64>();
+                    if beside > 0.0 {
+                        row[field] / beside
+                    } else {
+                        0.0
+                    }
+                });
+                parts.fold(0.0, f64::max)
+            };
+            let others = self.direct.layout.columns.ids();
+            let others = others.filter(|field| !fields.contains(field));
+            // The weightiest first: next to it another may be noise.
+            let most = others.map(|field| (field, weight(field)));
+            match most.max_by(|a, b| a.1.total_cmp(&b.1)) {
+                Some((field, weight)) if weight > noise => fields.push(field),
+                _ => return fields,
+            }
+        }
+    }
+}
+
+impl Known {
+    /// A forcing.
+    pub fn forcing(problem: &Problem, right: &[C64]) -> Self {
+        let rows = problem.direct.layout.rows.len() + problem.direct.walls.len();
+        let mut known = Known {
+            fields: Vec::new(),
+            rows: vec![0.0; rows],
+        };
+        known.add(problem, right, 1.0);
+        known
+    }
+
+    /// A column of the equations, times a number of some size.
+    pub fn add<T: Scalar>(&mut self, problem: &Problem, column: &[T], factor: f64) {
+        let layout = &problem.direct.layout;
+        let rows = layout.rows.iter().map(|block| largest(block.of(column)));
+        let walls = (0..problem.direct.walls.len()).map(|i| column[layout.walls + i].size());
+        for (sum, size) in self.rows.iter_mut().zip(rows.chain(walls)) {
+            *sum += factor * size;
+        }
+    }
+}
+
+fn largest<T: Scalar>(values: &[T]) -> f64 {
+    values.iter().map(|v| v.size()).fold(0.0, f64::max)
+}
