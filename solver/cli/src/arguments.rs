@@ -42,7 +42,7 @@ pub enum Command {
     },
     /// Solve for the base state and print its profiles.
     #[command(
-        after_help = "Examples:\n  landau base my.model --set S=400 --set H=auto --points 21\n  landau base my.model --plot base.svg"
+        after_help = "Examples:\n  landau base my.model --set S=400 --set H=auto --points 21\n  landau base my.model --points 401 --plot base.svg --out base.nc"
     )]
     Base {
         /// A built model, or the path of a .model file.
@@ -50,15 +50,14 @@ pub enum Command {
         /// Number of heights to print, evenly spaced.
         #[arg(long, default_value_t = 41)]
         points: usize,
-        /// A picture.
-        #[arg(long, value_name = "FILE.svg|png")]
-        plot: Option<PathBuf>,
+        #[command(flatten)]
+        files: Files,
         #[command(flatten)]
         common: Common,
     },
     /// Direct and adjoint eigenvalues at one wavenumber.
     #[command(
-        after_help = "Examples:\n  landau spectrum my.model --k 0.16 -M 100\n  landau spectrum my.model --k 0.16 --plot spectrum.svg"
+        after_help = "Examples:\n  landau spectrum my.model --k 0.16 -M 100\n  landau spectrum my.model --k 0.16 --plot spectrum.svg --out spectrum.npz"
     )]
     Spectrum {
         /// A built model, or the path of a .model file.
@@ -66,9 +65,8 @@ pub enum Command {
         /// Wavenumber; the model's typical one by default.
         #[arg(long, allow_negative_numbers = true)]
         k: Option<f64>,
-        /// The eigenvalues of L and L† in the complex plane.
-        #[arg(long, value_name = "FILE.svg|png")]
-        plot: Option<PathBuf>,
+        #[command(flatten)]
+        files: Files,
         #[command(flatten)]
         common: Common,
     },
@@ -85,12 +83,8 @@ pub enum Command {
         /// Order of the expansion: 3 gives c2, 5 c4, and so on.
         #[arg(long, default_value_t = 3)]
         order: usize,
-        /// The modes of the expansion and the adjoint mode as profiles.
-        #[arg(long, value_name = "FILE.svg|png")]
-        plot: Option<PathBuf>,
-        /// The same as data (repeatable): .npz or .nc.
-        #[arg(long, value_name = "FILE")]
-        out: Vec<PathBuf>,
+        #[command(flatten)]
+        files: Files,
         #[command(flatten)]
         common: Common,
     },
@@ -227,6 +221,17 @@ pub struct CriticalOptions {
     /// A picture of the quantity over the range, and where it vanishes; with --minimize, of the growth rate over k.
     #[arg(long, value_name = "FILE.svg|png")]
     pub plot: Option<PathBuf>,
+}
+
+/// Where an answer goes besides the screen.
+#[derive(Args)]
+pub struct Files {
+    /// A picture: profiles of the base state, eigenvalues in the complex plane, modes with the adjoint one.
+    #[arg(long, value_name = "FILE.svg|png")]
+    pub plot: Option<PathBuf>,
+    /// The same as data (repeatable).
+    #[arg(long, value_name = "FILE.npz|nc")]
+    pub out: Vec<PathBuf>,
 }
 
 #[derive(Args)]

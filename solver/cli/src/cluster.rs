@@ -3,8 +3,8 @@
 use crate::arguments::{Common, Engine, MergeOptions, SweepOptions};
 use crate::asked::resumed;
 use crate::interrupt;
-use crate::picture;
 use crate::progress::Bar;
+use landau_report::data::csvw::write_beside;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{destination, write_whole};
 use landau_solver::study::shard::{self, Share};
@@ -68,7 +68,7 @@ pub fn merge(options: &MergeOptions) -> Result<()> {
     }
     write_whole(&target, &bytes)?;
     let header = merged.header.iter().map(String::as_str);
-    picture::described(&target, header, &merged.facts)?;
+    write_beside(&target, header, &merged.facts)?;
     say!("{} shares: {}", options.shards.len(), options.out.display());
     Ok(())
 }

@@ -72,31 +72,30 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
         Command::Base {
             model,
             points,
-            plot,
+            files,
             common,
         } => {
             let setup = &setup(library, &model, &common)?;
-            solve::base(setup, points, plot.as_deref(), &common)
+            solve::base(setup, points, &files, &common)
         }
         Command::Spectrum {
             model,
             k,
-            plot,
+            files,
             common,
         } => {
             let setup = &setup(library, &model, &common)?;
-            solve::spectrum(setup, k, plot.as_deref(), &common)
+            solve::spectrum(setup, k, &files, &common)
         }
         Command::Point {
             model,
             k,
             order,
-            plot,
-            out,
+            files,
             common,
         } => {
             let setup = &setup(library, &model, &common)?;
-            picture::modes(setup, k, plot.as_deref(), &out, &common)?;
+            picture::modes(setup, k, &files, &common)?;
             solve::point(setup, k, order, &common)
         }
         Command::Amplitudes {

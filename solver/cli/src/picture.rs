@@ -1,18 +1,16 @@
 //! Pictures of answers, and what is stored beside them; the table of a sweep.
 
-use crate::arguments::Common;
+use crate::arguments::{Common, Files};
 use crate::asked::asked;
-use landau_report::data::csvw;
 use landau_report::data::plane::{attributes, modes as dataset};
+use landau_report::data::{Dataset, Facts};
 use landau_report::figure;
 use landau_report::figure::{Drawing, Panel, Style, atlas, is_picture, panels};
 use landau_solver::error::{Error, Result};
-use landau_solver::file::write_whole;
 use landau_solver::study::Setup;
 use landau_solver::study::modes::Modes;
 use landau_solver::study::row::{Column, Row, column};
 use landau_solver::study::sweep::Sweep;
-use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 
 /// Writes a picture where one is asked for.
@@ -45,48 +43,57 @@ pub fn accepted(path: Option<&Path>) -> Result<()> {
     }
 }
 
+/// Whether picture and data could be written there, before anything is computed.
+///
+/// # Errors
+/// A picture that is no .svg or .png, data that are no .npz or .nc.
+pub fn all_accepted(files: &Files) -> Result<()> {
+    accepted(files.plot.as_deref())?;
+    let other = |path: &&PathBuf| path.extension().is_none_or(|e| e != "npz" && e != "nc");
+    match files.out.iter().find(other) {
+        Some(path) => Err(Error::input(format!(
+            "--out {}: it accepts .npz, .nc",
+            path.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Stores data, with what they were computed from, wherever that is asked for.
+///
+/// # Errors
+/// A file that cannot be written.
+pub fn stored(
+    setup: &Setup,
+    k: Option<f64>,
+    out: &[PathBuf],
+    data: impl Fn(Facts) -> Dataset,
+) -> Result<()> {
+    if out.is_empty() {
+        return Ok(());
+    }
+    let state = setup.base(None)?;
+    let facts = attributes(setup, &state.parameters, k, None);
+    let data = data(facts);
+    out.iter().try_for_each(|path| data.write(path))
+}
+
 /// The modes at a wavenumber, drawn and stored where that is asked for.
 ///
 /// # Errors
-/// As [`drawn`], and a file that is no .npz or .nc.
-pub fn modes(
-    setup: &Setup,
-    k: Option<f64>,
-    plot: Option<&Path>,
-    out: &[PathBuf],
-    common: &Common,
-) -> Result<()> {
-    if plot.is_none() && out.is_empty() {
+/// As [`drawn`] and [`all_accepted`].
+pub fn modes(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -> Result<()> {
+    all_accepted(files)?;
+    if files.plot.is_none() && files.out.is_empty() {
         return Ok(());
-    }
-    for path in out {
-        if path.extension().is_none_or(|e| e != "npz" && e != "nc") {
-            return Err(Error::input(format!(
-                "--out {}: it accepts .npz, .nc",
-                path.display()
-            )));
-        }
     }
     let (k, selection) = asked(setup, k, common)?;
     let found = Modes::compute(setup, k, selection)?;
-    drawn(plot, || figure::modes(setup.model.structure(), &found))?;
-    let state = setup.base(None)?;
-    for path in out {
-        let facts = attributes(setup, &state.parameters, k, None);
-        dataset(setup, &found, facts).write(path)?;
-    }
-    Ok(())
-}
-
-/// What the columns of a table are, beside it.
-pub fn described<'h>(
-    table: &Path,
-    header: impl Iterator<Item = &'h str>,
-    facts: &Map<String, Value>,
-) -> Result<()> {
-    let name = table.file_name().unwrap_or_default().to_string_lossy();
-    let path = table.with_file_name(csvw::beside(&name));
-    write_whole(&path, csvw::describe_sweep(&name, header, facts).as_bytes())
+    let structure = setup.model.structure();
+    drawn(files.plot.as_deref(), || figure::modes(structure, &found))?;
+    stored(setup, Some(k), &files.out, |facts| {
+        dataset(setup, &found, facts)
+    })
 }
 
 /// Rows shown of a long table.

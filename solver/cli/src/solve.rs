@@ -1,87 +1,54 @@
 //! Commands that compute.
 
-use crate::arguments::{Common, CriticalOptions, Of, SweepOptions, range};
+use crate::arguments::{Common, CriticalOptions, Files, Of, SweepOptions, range};
 use crate::asked::{asked, resumed};
 use crate::progress::Bar;
 use crate::{cluster, interrupt, picture};
+use landau_report::data::csvw::write_beside;
+use landau_report::data::lines;
 use landau_report::figure;
 use landau_report::library::column;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::destination;
-use landau_solver::model::{FieldId, Table};
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{Quantity, Question};
 use landau_solver::study::minimise::minimise;
 use landau_solver::study::point::PointReport;
+use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::verify::Certificate;
 use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality};
 use landau_solver::words;
-use serde_json::{Map, Value, json};
-use std::path::Path;
+use serde_json::json;
 
-pub fn base(setup: &Setup, points: usize, plot: Option<&Path>, common: &Common) -> Result<()> {
-    if !(2..=100_000).contains(&points) {
-        return Err(Error::input(format!(
-            "--points {points} is out of range: it accepts 2 to 100000"
-        )));
+pub fn base(setup: &Setup, points: usize, files: &Files, common: &Common) -> Result<()> {
+    picture::all_accepted(files)?;
+    let found = BaseReport::compute(setup, points)?;
+    if let Some(plot) = &files.plot {
+        let fine = BaseReport::compute(setup, figure::POINTS)?;
+        picture::drawn(Some(plot), || figure::base(&fine))?;
     }
-    let state = setup.base(None)?;
-    picture::drawn(plot, || figure::base(setup, &state))?;
     let structure = setup.model.structure();
-    let coordinate = structure.coordinate.clone().unwrap_or_else(|| "y".into());
-    let places = state.space.evenly(points);
-    let heights: Vec<f64> = places.iter().map(|&place| state.space.y(place)).collect();
-    let states: Vec<Vec<f64>> = places.iter().map(|&place| state.at(place, 0.0)).collect();
-    let profile = |field: FieldId| -> Vec<f64> {
-        let value = |point: &Vec<f64>| structure.base_value(point, field, 0);
-        states.iter().map(value).collect()
-    };
-    let profiles: Table<FieldId, Vec<f64>> = structure.fields.ids().map(profile).collect();
+    picture::stored(setup, None, &files.out, |facts| {
+        lines::base(structure, &found, facts)
+    })?;
     if common.json {
-        let named = structure.fields.iter().zip(profiles.iter());
-        let named = named.map(|(info, values)| {
-            let values = values.iter().map(|&v| words::number(v)).collect();
-            (info.name.clone(), values)
-        });
-        let profiles: Map<String, Value> = named.collect();
-        let object = json!({
-            "model": structure.name,
-            "parameters": words::parameters(setup, &state.parameters),
-            "degree": state.degree,
-            "tail": words::number(state.tail()),
-            "residual": words::number(state.residual),
-            (coordinate): heights,
-            "profiles": profiles,
-        });
-        say!("{object}");
-        return Ok(());
-    }
-    say!(
-        "{} — base state, {} Chebyshev polynomials, tail {:.1e}",
-        structure.title,
-        state.degree + 1,
-        state.tail()
-    );
-    let names = structure.fields.iter().map(|f| f.name.as_str());
-    let header: Vec<String> = std::iter::once(coordinate.as_str())
-        .chain(names)
-        .map(|n| format!("{n:>16}"))
-        .collect();
-    say!("{}", header.join(""));
-    for (i, height) in heights.iter().enumerate() {
-        let values = profiles.iter().map(|values| values[i]);
-        let row = std::iter::once(*height).chain(values);
-        say!("{}", row.map(|v| format!("{v:>16.9}")).collect::<String>());
+        say!("{}", found.json());
+    } else {
+        say!("{found}");
     }
     Ok(())
 }
 
-pub fn spectrum(setup: &Setup, k: Option<f64>, plot: Option<&Path>, common: &Common) -> Result<()> {
+pub fn spectrum(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -> Result<()> {
+    picture::all_accepted(files)?;
     let (k, _) = asked(setup, k, common)?;
     let found = SpectrumReport::compute(setup, k)?;
-    picture::drawn(plot, || figure::spectrum(&found))?;
+    picture::drawn(files.plot.as_deref(), || figure::spectrum(&found))?;
+    picture::stored(setup, Some(k), &files.out, |facts| {
+        lines::spectrum(&found, facts)
+    })?;
     if common.json {
         say!("{}", found.json());
     } else {
@@ -302,7 +269,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
     interrupt::keeping(&options.out);
     let rows = sweep.run_to(&options.out, &Bar::new("sweeping"), resumed)?;
     interrupt::finished();
-    picture::described(&options.out, sweep.header(), &sweep.facts())?;
+    write_beside(&options.out, sweep.header(), &sweep.facts())?;
     if let Some(path) = &options.plot
         && let Some(drawn) = picture::sweep(setup, &sweep, &rows)
     {

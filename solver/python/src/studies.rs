@@ -2,6 +2,7 @@
 
 use crate::model::Core;
 use crate::watch::watched;
+use landau_report::data::csvw::write_beside;
 use landau_report::library::column;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::write_whole;
@@ -11,6 +12,7 @@ use landau_solver::study::critical::{self, Quantity, Question};
 use landau_solver::study::minimise::minimise;
 use landau_solver::study::modes::Modes;
 use landau_solver::study::point::PointReport;
+use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::row::Row;
 use landau_solver::study::shard::{Share, merge};
 use landau_solver::study::spectrum::SpectrumReport;
@@ -41,35 +43,6 @@ fn selection(near: Near) -> Selection<'static> {
     near.map_or(Selection::Leading, |(re, im)| {
         Selection::Near(C64::new(re, im))
     })
-}
-
-fn profiles(setup: &Setup, points: usize) -> Result<Value> {
-    if !(2..=100_000).contains(&points) {
-        return Err(Error::input(format!(
-            "points = {points} is out of range: it accepts 2 to 100000"
-        )));
-    }
-    let state = setup.base(None)?;
-    let structure = setup.model.structure();
-    let places = state.space.evenly(points);
-    let states: Vec<Vec<f64>> = places.iter().map(|&place| state.at(place, 0.0)).collect();
-    let mut fields = Map::new();
-    for (field, info) in structure.fields.pairs() {
-        let values = states.iter().map(|s| structure.base_value(s, field, 0));
-        fields.insert(info.name.clone(), values.map(words::number).collect());
-    }
-    let heights = places
-        .iter()
-        .map(|&place| words::number(state.space.y(place)));
-    Ok(json!({
-        "model": structure.name,
-        "parameters": words::parameters(setup, &state.parameters),
-        "degree": state.degree,
-        "tail": words::number(state.tail()),
-        "residual": words::number(state.residual),
-        "y": heights.collect::<Vec<_>>(),
-        "profiles": fields,
-    }))
 }
 
 /// A sweep over axes that are checked.
@@ -158,7 +131,8 @@ impl Core {
         points: usize,
     ) -> PyResult<String> {
         watched(py, |_| {
-            Ok(profiles(&setup(self, &set, resolution)?, points)?.to_string())
+            let found = BaseReport::compute(&setup(self, &set, resolution)?, points)?;
+            Ok(found.json().to_string())
         })
     }
 
@@ -294,8 +268,11 @@ impl Core {
             let sweep = swept(&setup, axes, k, near, &columns)?;
             let rows = match out {
                 Some(path) => {
-                    sweep.check_output(Path::new(&path))?;
-                    sweep.run_to(Path::new(&path), watch, |_| {})?
+                    let path = Path::new(&path);
+                    sweep.check_output(path)?;
+                    let rows = sweep.run_to(path, watch, |_| {})?;
+                    write_beside(path, sweep.header(), &sweep.facts())?;
+                    rows
                 }
                 None => sweep.run(watch),
             };
@@ -327,7 +304,12 @@ impl Core {
     /// Puts the files of all shares together.
     #[staticmethod]
     fn merge(py: Python<'_>, shards: Vec<PathBuf>, out: PathBuf) -> PyResult<()> {
-        watched(py, |_| write_whole(&out, &merge(&shards)?.table))
+        watched(py, |_| {
+            let merged = merge(&shards)?;
+            write_whole(&out, &merged.table)?;
+            let header = merged.header.iter().map(String::as_str);
+            write_beside(&out, header, &merged.facts)
+        })
     }
 
     fn verify(

@@ -79,6 +79,9 @@ def test_sweeps(tmp_path):
     out = tmp_path / "sweep.csv"
     model.sweep(k=[0.9, 1.0], r=0.1, out=out)
     assert out.read_text().startswith("k,c0_re")
+    described = json.loads((tmp_path / "sweep.csv-metadata.json").read_text())
+    assert described["landau:model"] == "swift_hohenberg"
+    assert [c["titles"] for c in described["tableSchema"]["columns"]] == out.read_text().splitlines()[0].split(",")
 
 
 def test_pictures_and_tables():

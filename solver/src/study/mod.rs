@@ -11,6 +11,7 @@ pub mod minimise;
 pub mod modes;
 pub mod orders;
 pub mod point;
+pub mod profiles;
 mod progress;
 pub mod quadrature;
 pub mod row;

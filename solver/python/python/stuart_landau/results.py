@@ -95,7 +95,7 @@ class Base(Result):
     def __init__(self, model: Any, data: dict[str, Any]) -> None:
         super().__init__(model, data)
         self.parameters: dict[str, Any] = data["parameters"]
-        self.y = _array(data["y"])
+        self.y = _array(data[model.coordinate or "y"])
         self.profiles = {name: _array(values) for name, values in data["profiles"].items()}
         #: Size of the last Chebyshev coefficients over the largest.
         self.tail: float = data["tail"]

@@ -1,7 +1,10 @@
 //! What a table's columns are, in a file beside it: CSV on the Web (W3C 2015), `NAME.csv-metadata.json`.
 
+use landau_solver::error::Result;
+use landau_solver::file::write_whole;
 use landau_solver::study::row;
 use serde_json::{Map, Value, json};
+use std::path::Path;
 
 /// The name of the description of a table.
 pub fn beside(csv: &str) -> String {
@@ -62,7 +65,7 @@ pub fn describe(
 }
 
 /// The description of a sweep's table: its columns, and what the numbers were computed from, `title` among them.
-pub fn describe_sweep<'h>(
+fn describe_sweep<'h>(
     csv: &str,
     header: impl Iterator<Item = &'h str>,
     facts: &Map<String, Value>,
@@ -83,6 +86,20 @@ pub fn describe_sweep<'h>(
         .map(|(name, value)| (name.clone(), value.clone()))
         .collect();
     describe(csv, title, &columns, &facts)
+}
+
+/// Writes the description of a sweep's table beside it.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub fn write_beside<'h>(
+    table: &Path,
+    header: impl Iterator<Item = &'h str>,
+    facts: &Map<String, Value>,
+) -> Result<()> {
+    let name = table.file_name().unwrap_or_default().to_string_lossy();
+    let path = table.with_file_name(beside(&name));
+    write_whole(&path, describe_sweep(&name, header, facts).as_bytes())
 }
 
 /// What a column holds.

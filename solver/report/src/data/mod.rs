@@ -1,6 +1,8 @@
 //! Arrays with their axes and what they were computed from, for other programs.
 
 pub mod csvw;
+pub mod lines;
+mod names;
 mod netcdf;
 mod npz;
 pub mod plane;

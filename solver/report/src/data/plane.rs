@@ -1,5 +1,6 @@
 //! A pattern as arrays over (y, x), with what it was computed from.
 
+use super::names::{distinct, plain};
 use super::{Array, Axis, Dataset, Fact, Facts};
 use landau_solver::model::{C64, Structure};
 use landau_solver::parameters::Parameters;
@@ -8,10 +9,15 @@ use landau_solver::study::modes::Modes;
 use landau_solver::weakly::Pattern;
 
 /// Real or imaginary part.
-type Side = fn(&C64) -> f64;
+pub(super) type Side = fn(&C64) -> f64;
 
 /// What the numbers were computed from: parameters by name, a switch by its choice.
-pub fn attributes(setup: &Setup, parameters: &Parameters, k: f64, amplitude: Option<f64>) -> Facts {
+pub fn attributes(
+    setup: &Setup,
+    parameters: &Parameters,
+    k: Option<f64>,
+    amplitude: Option<f64>,
+) -> Facts {
     let structure = setup.model.structure();
     let text = |name: &str, value: &str| (name.to_owned(), Fact::Text(value.to_owned()));
     let number = |name: &str, value: f64| (name.to_owned(), Fact::Number(value));
@@ -20,19 +26,20 @@ pub fn attributes(setup: &Setup, parameters: &Parameters, k: f64, amplitude: Opt
         text("source", &format!("Landau {}", env!("CARGO_PKG_VERSION"))),
         text("model", &structure.name),
         text("model_hash", &setup.hash()),
-        number("k", k),
         number("resolution", setup.resolution as f64),
         text("normalization", &structure.amplitude.description),
         text("landau_version", env!("CARGO_PKG_VERSION")),
     ];
+    list.extend(k.map(|k| number("k", k)));
     list.extend(amplitude.map(|amplitude| number("amplitude", amplitude)));
     let parameter = structure.parameters.pairs();
     let values: Vec<String> = parameter
         .map(|(id, info)| format!("{}={}", info.name, parameters.shown(structure, id)))
         .collect();
     list.push(text("parameters", &values.join(" ")));
-    for (id, info) in structure.parameters.pairs() {
-        let name = format!("parameter_{}", info.name);
+    let names = distinct(structure.parameters.iter().map(|info| info.name.as_str()));
+    for ((id, info), name) in structure.parameters.pairs().zip(names) {
+        let name = format!("parameter_{name}");
         list.push(match info.choices.is_empty() {
             true => number(&name, parameters.values[id]),
             false => text(&name, &parameters.shown(structure, id)),
@@ -42,7 +49,7 @@ pub fn attributes(setup: &Setup, parameters: &Parameters, k: f64, amplitude: Opt
 }
 
 /// A field in words, by the spec's own where it has some.
-fn words(structure: &Structure, name: &str) -> String {
+pub(super) fn words(structure: &Structure, name: &str) -> String {
     let doc = structure
         .field(name)
         .map(|id| structure.fields[id].doc.clone());
@@ -60,12 +67,14 @@ pub fn modes(setup: &Setup, found: &Modes, attributes: Facts) -> Dataset {
             "X†" => "adjoint".to_owned(),
             name => plain(name),
         };
-        for (part, values) in profile.parts.iter().zip(&profile.values) {
+        let parts = distinct(profile.parts.iter().map(String::as_str));
+        let parts = parts.iter().zip(&profile.parts).zip(&profile.values);
+        for ((part, written), values) in parts {
             let sides: [(&str, Side); 2] = [("re", |v| v.re), ("im", |v| v.im)];
             for (side, of) in sides {
                 arrays.push(Array {
                     name: format!("{name}_{part}_{side}"),
-                    long_name: format!("{} of {}, {side}", words(structure, part), profile.name),
+                    long_name: format!("{} of {}, {side}", words(structure, written), profile.name),
                     axes: vec![0],
                     values: values.iter().map(of).collect(),
                 });
@@ -75,19 +84,13 @@ pub fn modes(setup: &Setup, found: &Modes, attributes: Facts) -> Dataset {
     Dataset {
         attributes,
         axes: vec![Axis {
-            name: vertical.to_owned(),
+            name: plain(vertical),
             long_name: "cross-stream coordinate".to_owned(),
             values: found.heights.clone(),
         }],
         arrays,
         vectors: Vec::new(),
     }
-}
-
-/// A name that other programs take for one: X13 for X[1;3], theta1y for theta + 1 - y.
-fn plain(name: &str) -> String {
-    let kept = |c: &char| c.is_ascii_alphanumeric() || *c == '_';
-    name.chars().filter(kept).collect()
 }
 
 /// X⁰, P (4.5) and P (4.4) of every field over (y, x); `vector` names the two fields that are one.
@@ -99,9 +102,10 @@ pub fn dataset(
 ) -> Dataset {
     let structure = setup.model.structure();
     let vertical = structure.coordinate.as_deref().unwrap_or("y");
+    let all = || found.fields.iter().chain(&found.derived);
+    let names = distinct(all().map(|field| field.name.as_str()));
     let mut arrays = Vec::new();
-    for field in found.fields.iter().chain(&found.derived) {
-        let name = plain(&field.name);
+    for (field, name) in all().zip(&names) {
         let flat = |values: &[Vec<f64>]| values.iter().flatten().copied().collect();
         let said = words(structure, &field.name);
         for (kind, what, values) in [
@@ -126,25 +130,30 @@ pub fn dataset(
         attributes,
         axes: vec![
             Axis {
-                name: vertical.to_owned(),
+                name: plain(vertical),
                 long_name: "cross-stream coordinate".to_owned(),
                 values: found.y.clone(),
             },
             Axis {
-                name: structure.periodic.clone(),
+                name: plain(&structure.periodic),
                 long_name: "periodic coordinate".to_owned(),
                 values: found.x.clone(),
             },
         ],
         arrays,
-        vectors: vector.map_or(Vec::new(), vectors),
+        vectors: vector.map_or(Vec::new(), |pair| {
+            vectors(pair.map(|component| {
+                let position = all().position(|field| field.name == component);
+                position.map_or_else(|| plain(component), |i| names[i].clone())
+            }))
+        }),
     }
 }
 
 /// The vector of two fields, linear and nonlinear.
-fn vectors(fields: [&str; 2]) -> Vec<(String, [String; 2])> {
+fn vectors(fields: [String; 2]) -> Vec<(String, [String; 2])> {
     let of = |kind: &str| {
-        let components = fields.map(|field| format!("{}_{kind}", plain(field)));
+        let components = fields.each_ref().map(|field| format!("{field}_{kind}"));
         (format!("vector_{kind}"), components)
     };
     vec![of("linear"), of("nonlinear")]

@@ -99,7 +99,7 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
         };
         let drawing = pattern_pair(structure, &found, &view);
         let parameters = &setup.base(None)?.parameters;
-        let facts = attributes(&setup, parameters, k, Some(found.amplitude));
+        let facts = attributes(&setup, parameters, Some(k), Some(found.amplitude));
         let vector = wanted.arrows.map(|[u, v]| [u.as_str(), v.as_str()]);
         let data = dataset(&setup, &found, facts, vector);
         let seen = Seen {
