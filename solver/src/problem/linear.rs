@@ -70,6 +70,8 @@ pub(super) struct CollocatedTerm<Row, Column> {
     pub row: Row,
     pub jet: Jet<Column>,
     pub coefficients: Vec<f64>,
+    /// The largest of them.
+    pub largest: f64,
 }
 
 /// An operator from columns to rows with mass matrix and boundary conditions.
@@ -207,6 +209,7 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
             row,
             jet,
             coefficients,
+            ..
         } in &self.terms
         {
             if self.layout.columns.find(jet.of).is_none() {
@@ -289,21 +292,17 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
     /// What a column of a given size adds at most to each row and then to each wall of L − c M0:
     /// Σ |coefficient| |k|^a (2/h)^d |c|^t size.
     pub fn shares(&self, k: f64, c: C64, sizes: &Table<Column, f64>) -> Vec<Table<Column, f64>> {
+        let rates = [k.abs(), self.space.rate(), c.norm()];
         let size = |jet: &Jet<Column>| {
-            let symbol = k.abs().powi(i32::from(jet.x + jet.absx));
-            let slope = self.space.rate().powi(i32::from(jet.y));
-            sizes.find(jet.of).map_or(0.0, |size| {
-                size * symbol * slope * c.norm().powi(i32::from(jet.t))
-            })
+            let orders = [jet.x + jet.absx, jet.y, jet.t].map(i32::from);
+            let powers = rates.iter().zip(orders).filter(|(_, order)| *order > 0);
+            let symbol: f64 = powers.map(|(rate, order)| rate.powi(order)).product();
+            sizes.find(jet.of).map_or(0.0, |size| size * symbol)
         };
         let mut shares = vec![sizes.map(|_| 0.0); self.layout.rows.len() + self.walls.len()];
         for term in &self.terms {
-            let largest = term
-                .coefficients
-                .iter()
-                .fold(0.0, |m: f64, c| m.max(c.abs()));
             if sizes.find(term.jet.of).is_some() {
-                shares[term.row.index()][term.jet.of] += largest * size(&term.jet);
+                shares[term.row.index()][term.jet.of] += term.largest * size(&term.jet);
             }
         }
         for (index, wall) in self.walls.iter().enumerate() {

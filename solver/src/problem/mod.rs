@@ -273,6 +273,7 @@ fn terms<Row: Id, Column: Id>(
             row: info.row,
             jet: info.jet,
             coefficients: Vec::new(),
+            largest: 0.0,
         })
         .collect();
     for (points, rows) in layout.groups() {
@@ -280,6 +281,8 @@ fn terms<Row: Id, Column: Id>(
         let own = terms.iter_mut().enumerate();
         for (index, term) in own.filter(|(_, term)| rows.contains(&term.row)) {
             term.coefficients = values.iter().map(|v| v[index]).collect();
+            let sizes = term.coefficients.iter().map(|c| c.abs());
+            term.largest = sizes.fold(0.0, f64::max);
             if let Some(bad) = term.coefficients.iter().position(|c| !c.is_finite()) {
                 let place: Place = states.space.places(points)[bad];
                 let coordinate = states.base.structure().coordinate.as_deref();

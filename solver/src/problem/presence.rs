@@ -4,7 +4,7 @@
 //! force that is a gradient makes a pressure and no flow. Left as noise, such fields would make a c2 of noise, for
 //! which no resolution is enough.
 
-use super::Problem;
+use super::{Blocks, Problem};
 use crate::model::{C64, FieldId, Table};
 use crate::numerics::Applied;
 use crate::numerics::dense::Scalar;
@@ -38,11 +38,11 @@ impl Problem {
     }
 
     /// The field that an eigenvector has for certain: the one with the largest part of yᴴ M0 x, whatever the units.
-    pub fn carrier(&self, k: f64, right: &[C64], left: &[C64]) -> Known {
-        let weights = self.direct.mass::<C64>(k).apply_adjoint(left);
+    pub fn carrier<T: Scalar>(&self, mass: &Blocks<T>, right: &[T], left: &[T]) -> Known {
+        let weights = mass.apply_adjoint(left);
         let part = |block: &Block| -> f64 {
             let pairs = block.of(&weights).iter().zip(block.of(right));
-            pairs.map(|(w, x)| w.norm() * x.norm()).sum()
+            pairs.map(|(w, x)| w.size() * x.size()).sum()
         };
         let parts = self.direct.layout.columns.pairs();
         let parts = parts.map(|(field, block)| (field, part(block)));

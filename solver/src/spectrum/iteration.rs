@@ -66,9 +66,9 @@ fn iterate<T: Scalar>(
     let shifted = problem.shifted::<T>(k, shift);
     let mass = problem.direct.mass::<T>(k);
     let found = inverse_iteration(shifted, &mass, shift, scale, starts)?;
+    let known = problem.carrier(&mass, &found.right, &found.left);
     let mut right = Turned(found.right).complex();
     let left = Turned(found.left).complex();
-    let known = problem.carrier(k, &right, &left);
     problem.clear_absent(k, found.c, &mut right, known);
     Some(EigenPair {
         k,
