@@ -35,6 +35,15 @@ pub struct Number {
 }
 
 impl Number {
+    /// Whether both are one number: a point marked in one picture and asked for beside another.
+    fn is(&self, other: &Number) -> bool {
+        let place = |number: &Number| (number.figure.clone(), number.quantity.clone());
+        let free = self.decides.is_none() && other.decides.is_none();
+        free && place(self) == place(other)
+            && self.ours == other.ours
+            && (self.printed.is_none() || other.printed.is_none())
+    }
+
     /// A number of a case, by the name under which the source may print it.
     pub fn new(figure: &str, case: &Case, quantity: &str, label: String) -> Self {
         let printed = case.printed.get(quantity);
@@ -161,7 +170,14 @@ impl Outcome {
     /// Adds everything of another.
     pub fn add(&mut self, other: Outcome) {
         self.pictures.extend(other.pictures);
-        self.numbers.extend(other.numbers);
+        for number in other.numbers {
+            match self.numbers.iter_mut().find(|known| known.is(&number)) {
+                // With what is printed, if either has it.
+                Some(known) if known.printed.is_none() => *known = number,
+                Some(_) => {}
+                None => self.numbers.push(number),
+            }
+        }
         self.claims.extend(other.claims);
         self.failures.extend(other.failures);
     }
