@@ -47,7 +47,8 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
     let expressions = shaded(setup, options)?;
     let found = expand(&point, amplitude, window, &expressions)?;
     let vector = options.arrows.as_deref().map(components).transpose()?;
-    let attributes = attributes(setup, &state.parameters, Some(k), Some(amplitude));
+    let parameters = words::parameters(setup, &state.parameters);
+    let attributes = attributes(setup, &parameters, Some(k), Some(amplitude));
     for name in vector.iter().flatten() {
         named(&found, name)?;
     }

@@ -11,6 +11,7 @@ use landau_solver::study::Setup;
 use landau_solver::study::modes::Modes;
 use landau_solver::study::row::{Column, Row, column};
 use landau_solver::study::sweep::Sweep;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 
 /// Writes a picture where one is asked for.
@@ -65,16 +66,12 @@ pub fn all_accepted(files: &Files) -> Result<()> {
 /// A file that cannot be written.
 pub fn stored(
     setup: &Setup,
+    parameters: &Value,
     k: Option<f64>,
     out: &[PathBuf],
     data: impl Fn(Facts) -> Dataset,
 ) -> Result<()> {
-    if out.is_empty() {
-        return Ok(());
-    }
-    let state = setup.base(None)?;
-    let facts = attributes(setup, &state.parameters, k, None);
-    let data = data(facts);
+    let data = data(attributes(setup, parameters, k, None));
     out.iter().try_for_each(|path| data.write(path))
 }
 
@@ -91,7 +88,7 @@ pub fn modes(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -> R
     let found = Modes::compute(setup, k, selection)?;
     let structure = setup.model.structure();
     drawn(files.plot.as_deref(), || figure::modes(structure, &found))?;
-    stored(setup, Some(k), &files.out, |facts| {
+    stored(setup, &found.parameters, Some(k), &files.out, |facts| {
         dataset(setup, &found, facts)
     })
 }

@@ -30,7 +30,7 @@ pub fn base(setup: &Setup, points: usize, files: &Files, common: &Common) -> Res
         picture::drawn(Some(plot), || figure::base(&fine))?;
     }
     let structure = setup.model.structure();
-    picture::stored(setup, None, &files.out, |facts| {
+    picture::stored(setup, &found.parameters, None, &files.out, |facts| {
         lines::base(structure, &found, facts)
     })?;
     if common.json {
@@ -46,7 +46,7 @@ pub fn spectrum(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -
     let (k, _) = asked(setup, k, common)?;
     let found = SpectrumReport::compute(setup, k)?;
     picture::drawn(files.plot.as_deref(), || figure::spectrum(&found))?;
-    picture::stored(setup, Some(k), &files.out, |facts| {
+    picture::stored(setup, &found.parameters, Some(k), &files.out, |facts| {
         lines::spectrum(&found, facts)
     })?;
     if common.json {

@@ -11,13 +11,13 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 create_exception!(
-    _core,
+    stuart_landau,
     InputError,
     PyValueError,
     "A bad parameter, name or spec; of a spec the text names place and expectation."
 );
 create_exception!(
-    _core,
+    stuart_landau,
     ComputationError,
     PyRuntimeError,
     "A computation that did not converge, or has no answer."

@@ -4,9 +4,14 @@ use crate::raised;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::text::{self, Section, Typeset};
 use landau_codegen::{Sources, generate};
+use landau_report::data::Fact;
+use landau_report::data::csvw::meaning;
+use landau_report::data::names::distinct;
+use landau_report::data::plane::attributes;
 use landau_report::library::Library;
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{Model, Structure};
+use landau_solver::study::Setup;
 use pyo3::prelude::*;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -93,7 +98,7 @@ fn from_text(text: String, laws: BTreeMap<String, String>) -> Result<Core> {
     taped(sources)
 }
 
-/// What Python shows of a structure.
+/// What Python shows of a structure; what has an order is a list of pairs.
 fn info(structure: &Structure) -> serde_json::Value {
     let parameters = structure.parameters.iter().map(|p| {
         let default = match p.choices.get(p.default as usize) {
@@ -106,20 +111,17 @@ fn info(structure: &Structure) -> serde_json::Value {
             "choices": p.choices,
             "automatic": p.automatic,
         });
-        (p.name.clone(), value)
+        json!([p.name, value])
     });
-    let fields = structure
-        .fields
-        .iter()
-        .map(|f| (f.name.clone(), json!(f.doc)));
+    let fields = structure.fields.iter().map(|f| json!([f.name, f.doc]));
     let typical = structure.typical.as_ref();
     json!({
         "name": structure.name,
         "title": structure.title,
         "coordinate": structure.coordinate,
         "periodic": structure.periodic,
-        "parameters": parameters.collect::<serde_json::Map<_, _>>(),
-        "fields": fields.collect::<serde_json::Map<_, _>>(),
+        "parameters": parameters.collect::<Vec<_>>(),
+        "fields": fields.collect::<Vec<_>>(),
         "normalization": structure.amplitude.description,
         "typical_k": typical.map(|t| t.k),
         "typical_near": typical.map_or(&[][..], |t| &t.near),
@@ -150,6 +152,37 @@ impl Core {
     /// Name, title, parameters and fields, as JSON.
     fn info(&self) -> String {
         info(self.model.structure()).to_string()
+    }
+
+    /// What datasets are labelled with, as the files of the command line are: `parameters` is JSON, by name.
+    fn attributes(
+        &self,
+        parameters: &str,
+        resolution: usize,
+        k: Option<f64>,
+        amplitude: Option<f64>,
+    ) -> PyResult<String> {
+        let setup = Setup::new(self.model.clone(), resolution);
+        let parameters = serde_json::from_str(parameters)
+            .map_err(|error| raised(Error::input(error.to_string())))?;
+        let facts = attributes(&setup, &parameters, k, amplitude).into_iter();
+        let facts = facts.map(|(name, fact)| match fact {
+            Fact::Text(text) => json!([name, text]),
+            Fact::Number(number) => json!([name, number]),
+        });
+        Ok(facts.collect::<serde_json::Value>().to_string())
+    }
+
+    /// Names as files have them: Latin letters, digits, underscores, each another.
+    #[staticmethod]
+    fn plain(names: Vec<String>) -> Vec<String> {
+        distinct(names.iter().map(String::as_str))
+    }
+
+    /// What a column of a sweep is.
+    #[staticmethod]
+    fn meaning(column: &str) -> String {
+        meaning(column)
     }
 
     /// Text of the spec, and of the laws by name: what a pickle holds.

@@ -22,7 +22,7 @@ use landau_solver::study::{Axis, Setup, check_wavenumber};
 use landau_solver::weakly::{Selection, Window, pattern};
 use landau_solver::words;
 use pyo3::prelude::*;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Re and Im of an eigenvalue that a mode is near to.
@@ -114,10 +114,15 @@ fn modes(found: &Modes) -> Value {
         |values: &[C64]| -> Vec<Value> { values.iter().map(|v| words::complex(*v)).collect() };
     let profiles = found.profiles.iter().map(|profile| {
         let own = profile.parts.iter().zip(&profile.values);
-        let own: Map<String, Value> = own.map(|(p, v)| (p.clone(), parts(v).into())).collect();
-        (profile.name.clone(), Value::Object(own))
+        let own: Vec<(&String, Vec<Value>)> = own.map(|(p, v)| (p, parts(v))).collect();
+        json!([profile.name, own])
     });
-    json!({"y": found.heights, "modes": profiles.collect::<Map<_, _>>()})
+    json!({
+        "parameters": found.parameters,
+        "k": found.k,
+        "y": found.heights,
+        "modes": profiles.collect::<Vec<_>>(),
+    })
 }
 
 #[pymethods]
@@ -366,15 +371,15 @@ impl Core {
                     "linear": field.linear,
                     "nonlinear": field.nonlinear,
                 });
-                (field.name.clone(), value)
+                json!([field.name, value])
             });
-            let fields: Map<String, Value> = fields.collect();
             let object = json!({
+                "parameters": words::parameters(&setup, &base.parameters),
                 "k": k,
                 "amplitude": amplitude,
                 "x": found.x,
                 "y": found.y,
-                "fields": fields,
+                "fields": fields.collect::<Vec<_>>(),
             });
             Ok(object.to_string())
         })

@@ -84,6 +84,43 @@ def test_sweeps(tmp_path):
     assert [c["titles"] for c in described["tableSchema"]["columns"]] == out.read_text().splitlines()[0].split(",")
 
 
+def test_datasets_are_those_of_the_files(tmp_path):
+    """Variables, values and attributes of every dataset, beside what the command line stores."""
+    bed = Model("vibrated_bed")
+    given = {"S": 200.0, "top": "neumann"}
+    options = "--set S=200 --set top=neumann"
+    for line, found in (
+        (f"base vibrated_bed --points 41 {options}", bed.base(points=41, **given)),
+        (f"spectrum vibrated_bed --k 0.1 -M 30 {options}", bed.spectrum(0.1, M=30, **given)),
+        (f"point vibrated_bed --k 0.16 {options}", bed.modes(0.16, **given)),
+        (f"pattern vibrated_bed --k 0.16 --points 9x17 {options}", bed.pattern(0.16, points=(9, 17), **given)),
+    ):
+        file = tmp_path / "arrays.npz"
+        command(f"{line} --out {file}")
+        dataset = found.to_xarray()
+        with np.load(file) as stored:
+            attributes = json.loads(bytes(stored["attributes"]))
+            names = [*dataset.variables]
+            assert sorted(names) == sorted(name for name in stored.files if name != "attributes"), line
+            for name in names:
+                np.testing.assert_array_equal(dataset[name].values, stored[name])
+                assert set(dataset[name].attrs) == {"units", "long_name"}
+        assert dataset.attrs == attributes, line
+    swept = bed.sweep(S=[100.0, 200.0], k=0.16, top="neumann").to_xarray()
+    assert swept.attrs["k"] == 0.16
+    assert swept.attrs["parameter_top"] == "neumann"
+    assert "parameter_S" not in swept.attrs
+    assert swept.c0_error.attrs["long_name"] .startswith("absolute error of c0")
+
+
+def test_errors_travel():
+    with pytest.raises(InputError) as raised:
+        Model("rayleigh_benard").point(3.1, nonsense=1)
+    again = pickle.loads(pickle.dumps(raised.value))
+    assert type(again) is InputError
+    assert str(again) == str(raised.value)
+
+
 def test_pictures_and_tables():
     bed = Model("vibrated_bed")
     point = bed.point(k=0.16)

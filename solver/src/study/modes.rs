@@ -7,6 +7,8 @@ use crate::model::{C64, Jet};
 use crate::problem::{LinearProblem, Problem};
 use crate::space::Place;
 use crate::weakly::{Expansion, Mode, Selection};
+use crate::words;
+use serde_json::Value;
 
 /// Heights of a profile.
 const HEIGHTS: usize = 201;
@@ -25,6 +27,8 @@ pub struct ModeProfile {
 /// All modes through third order, and the adjoint mode where the model has one.
 #[derive(Clone, Debug)]
 pub struct Modes {
+    /// By name; switches by the name of their choice.
+    pub parameters: Value,
     /// The wavenumber.
     pub k: f64,
     /// The eigenvalue of the fundamental.
@@ -60,6 +64,7 @@ impl Modes {
             profiles.push(adjoint(problem, &mode, &places)?);
         }
         Ok(Modes {
+            parameters: words::parameters(setup, &base.parameters),
             k,
             c0: point.c0,
             heights: places.iter().map(|&at| problem.space().y(at)).collect(),

@@ -83,9 +83,9 @@ class Model:
         self.name: str = info["name"]
         self.title: str = info["title"]
         #: By name: default, doc, choices, and whether "auto" is accepted.
-        self.parameters: dict[str, dict[str, Any]] = info["parameters"]
+        self.parameters: dict[str, dict[str, Any]] = dict(info["parameters"])
         #: Documentation by name.
-        self.fields: dict[str, str] = info["fields"]
+        self.fields: dict[str, str] = dict(info["fields"])
         #: What A = 1 means.
         self.normalization: str = info["normalization"]
         self.coordinate: str | None = info["coordinate"]
@@ -113,13 +113,13 @@ class Model:
 
     def base(self, *, points: int = 201, M: int = 50, set: Mapping[str, Value] | None = None, **parameters: Value) -> Base:
         """The base state at `points` evenly spaced heights."""
-        return Base(self, json.loads(self._core.base(self._set(set, parameters), M, points)))
+        return Base(self, json.loads(self._core.base(self._set(set, parameters), M, points)), M)
 
     def spectrum(
         self, k: float | None = None, *, M: int = 50, set: Mapping[str, Value] | None = None, **parameters: Value
     ) -> Spectrum:
         """Eigenvalues of L and of the separately discretised L†, by decreasing growth rate."""
-        return Spectrum(self, json.loads(self._core.spectrum(self._set(set, parameters), M, self._k(k))))
+        return Spectrum(self, json.loads(self._core.spectrum(self._set(set, parameters), M, self._k(k))), M)
 
     def point(
         self,
@@ -134,7 +134,7 @@ class Model:
         """Landau coefficients to an odd order, with errors and everything that they rest on."""
         k, near = self._mode(k, near)
         found = self._core.point(self._set(set, parameters), M, k, _near(near), order)
-        return Point(self, json.loads(found))
+        return Point(self, json.loads(found), M)
 
     def modes(
         self,
@@ -147,7 +147,7 @@ class Model:
     ) -> Modes:
         """X[1;1], X[0;2], X[2;2], X[1;3], X[3;3] and X† as profiles."""
         k, near = self._mode(k, near)
-        return Modes(self, json.loads(self._core.modes(self._set(set, parameters), M, k, _near(near))))
+        return Modes(self, json.loads(self._core.modes(self._set(set, parameters), M, k, _near(near))), M)
 
     def amplitudes(
         self,
@@ -162,7 +162,7 @@ class Model:
         chosen = [
             (float(mode[0]), _near(mode[1])) if isinstance(mode, tuple) else (float(mode), None) for mode in modes
         ]
-        return Amplitudes(self, json.loads(self._core.amplitudes(self._set(set, parameters), M, chosen, order)))
+        return Amplitudes(self, json.loads(self._core.amplitudes(self._set(set, parameters), M, chosen, order)), M)
 
     def critical(
         self,
@@ -179,7 +179,7 @@ class Model:
     ) -> Critical:
         """Where growth or c2 changes sign, or c2 jumps through infinity; `minimize` over a range of k."""
         found = self._core.critical(self._set(set, parameters), M, vary, between, of, k, minimize, _near(near))
-        return Critical(self, json.loads(found))
+        return Critical(self, json.loads(found), M)
 
     def sweep(
         self,
@@ -217,9 +217,15 @@ class Model:
             assignment = (self._set(None, fixed), M, axes, number, _near(near), list(columns))
             path = Path(target).resolve()
             distributed.run(cluster, self, assignment, path, tasks, cpus)
-            return Sweep(self, axes, distributed.rows(path, len(axes), list(columns)), columns)
-        found = self._core.sweep(self._set(None, fixed), M, axes, number, _near(near), list(columns), target)
-        return Sweep(self, axes, json.loads(found), columns)
+            rows = distributed.rows(path, len(axes), list(columns))
+        else:
+            rows = json.loads(
+                self._core.sweep(self._set(None, fixed), M, axes, number, _near(near), list(columns), target)
+            )
+        varying = [name for name, _ in axes]
+        defaults = {name: info["default"] for name, info in self.parameters.items() if name not in varying}
+        facts = {"parameters": {**defaults, **fixed}, "k": number}
+        return Sweep(self, rows, M, axes, facts, columns)
 
     def verify(
         self,
@@ -234,7 +240,7 @@ class Model:
         """The certificate at one wavenumber."""
         k, near = self._mode(k, near)
         found = self._core.verify(self._set(set, parameters), M, k, _near(near), order)
-        return Certificate(self, json.loads(found))
+        return Certificate(self, json.loads(found), M)
 
     def pattern(
         self,
@@ -252,7 +258,7 @@ class Model:
         k, near = self._mode(k, near)
         given = self._set(set, parameters)
         found = self._core.pattern(given, M, k, _near(near), amplitude, points, wavelengths)
-        return Pattern(self, json.loads(found))
+        return Pattern(self, json.loads(found), M)
 
     def _set(self, extra: Mapping[str, Value] | None, parameters: Mapping[str, Value]) -> list[str]:
         def shown(value: Value) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import json
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -34,19 +35,37 @@ def _latex(value: complex) -> str:
 class Result:
     """An answer; `data` is the object that the command line prints with --json."""
 
-    def __init__(self, model: Any, data: Any) -> None:
+    def __init__(self, model: Any, data: Any, resolution: int = 50) -> None:
         self.model = model
         self.data = data
+        #: M
+        self.resolution = resolution
 
-    def _attributes(self) -> dict[str, str]:
-        """What datasets are labelled with."""
-        parameters = self.data.get("parameters", {}) if isinstance(self.data, dict) else {}
-        return {
-            "model": self.model.name,
-            "title": self.model.title,
-            "normalization": self.model.normalization,
-            "parameters": " ".join(f"{name}={value}" for name, value in parameters.items()),
-        }
+    def _facts(self) -> dict[str, Any]:
+        """What the numbers were computed from: `parameters`, `k`, `amplitude`."""
+        return self.data
+
+    def _dataset(self, variables: dict[str, Any], axes: dict[str, tuple[np.ndarray, str]]) -> Any:
+        """Variables, each dimensions, values and what it is in words, over axes: labelled as the NetCDF files are."""
+        facts = self._facts()
+        listed = self.model._core.attributes(
+            json.dumps(facts["parameters"]), self.resolution, facts.get("k"), facts.get("amplitude")
+        )
+
+        def labelled(dims: Any, values: Any, words: str) -> tuple[Any, Any, dict[str, str]]:
+            return dims, values, {"units": "1", "long_name": words}
+
+        data = {name: labelled(*variable) for name, variable in variables.items()}
+        coordinates = {name: labelled((name,), values, words) for name, (values, words) in axes.items()}
+        return _xarray().Dataset(data, coordinates, dict(json.loads(listed)))
+
+    def _vertical(self) -> tuple[str, dict[str, tuple[np.ndarray, str]]]:
+        """The cross-stream coordinate's name, and the axis."""
+        (name,) = self.model._core.plain([self.model.coordinate or "y"])
+        return name, {name: (self.y, "cross-stream coordinate")}
+
+    def _words(self, field: str) -> str:
+        return self.model.fields.get(field) or field
 
     def _rows(self) -> list[tuple[str, str]]:
         return []
@@ -92,11 +111,11 @@ def _xarray() -> Any:
 class Base(Result):
     """A base state. `y`: heights, in units of length of the model; `profiles`: values by field."""
 
-    def __init__(self, model: Any, data: dict[str, Any]) -> None:
-        super().__init__(model, data)
+    def __init__(self, model: Any, data: dict[str, Any], resolution: int = 50) -> None:
+        super().__init__(model, data, resolution)
         self.parameters: dict[str, Any] = data["parameters"]
         self.y = _array(data[model.coordinate or "y"])
-        self.profiles = {name: _array(values) for name, values in data["profiles"].items()}
+        self.profiles = {name: _array(data["profiles"][name]) for name in model.fields}
         #: Size of the last Chebyshev coefficients over the largest.
         self.tail: float = data["tail"]
 
@@ -108,12 +127,13 @@ class Base(Result):
 
     def to_xarray(self) -> Any:
         """Profiles over the cross-stream coordinate."""
-        vertical = self.model.coordinate or "y"
+        vertical, axes = self._vertical()
+        names = self.model._core.plain(list(self.profiles))
         data = {
-            name: (vertical, values, {"long_name": self.model.fields[name] or name})
-            for name, values in self.profiles.items()
+            plain: ((vertical,), values, f"{self._words(name)}, base state")
+            for plain, (name, values) in zip(names, self.profiles.items())
         }
-        return _xarray().Dataset(data, {vertical: self.y}, self._attributes())
+        return self._dataset(data, axes)
 
     def plot(self, ax: Any = None) -> Any:
         """Every field over the cross-stream coordinate."""
@@ -129,8 +149,8 @@ class Spectrum(Result):
     """`direct`, `adjoint`: eigenvalues in units of 1/time, adjoint ones by their conjugates (None without adjoint
     conditions)."""
 
-    def __init__(self, model: Any, data: dict[str, Any]) -> None:
-        super().__init__(model, data)
+    def __init__(self, model: Any, data: dict[str, Any], resolution: int = 50) -> None:
+        super().__init__(model, data, resolution)
         self.k: float = data["k"]
         self.direct = np.array([_complex(c) for c in data["direct"]])
         adjoint = data.get("adjoint")
@@ -140,6 +160,19 @@ class Spectrum(Result):
 
     def _rows(self) -> list[tuple[str, str]]:
         return [(f"c[{i}]", f"{c:.10g}") for i, c in enumerate(self.direct[:6])]
+
+    def to_xarray(self) -> Any:
+        """Eigenvalues over the number of the mode, by decreasing growth rate; of L† nan where it has fewer."""
+        data = {}
+        for name, of, values in (("direct", "L", self.direct), ("adjoint", "the adjoint of L", self.adjoint)):
+            if values is None:
+                continue
+            padded = np.full(len(self.direct), complex(math.nan, math.nan))
+            padded[: len(values)] = values[: len(padded)]
+            data[f"{name}_re"] = (("mode",), padded.real, f"growth rate of the eigenvalues of {of}")
+            data[f"{name}_im"] = (("mode",), padded.imag, f"frequency of the eigenvalues of {of}")
+        number = np.arange(len(self.direct), dtype=float)
+        return self._dataset(data, {"mode": (number, "number of the mode, by decreasing growth rate")})
 
     def plot(self, ax: Any = None) -> Any:
         """Both in the complex plane."""
@@ -156,8 +189,8 @@ class Spectrum(Result):
 class Point(Result):
     """A Landau point. `c0`, `c2`, … (`coefficients`): dA/dt = a0 A + a2 A³ + …; `error`: absolute, by coefficient."""
 
-    def __init__(self, model: Any, data: dict[str, Any]) -> None:
-        super().__init__(model, data)
+    def __init__(self, model: Any, data: dict[str, Any], resolution: int = 50) -> None:
+        super().__init__(model, data, resolution)
         self.k: float = data["k"]
         self.parameters: dict[str, Any] = data["parameters"]
         self.error: dict[str, float] = data["error"]
@@ -196,7 +229,7 @@ class Point(Result):
             for (name, error), c in zip(self.error.items(), self.coefficients)
         ]
         rows.append(("bifurcation", self.bifurcation))
-        rows += [(f"A_e, order {o}", f"{a:.8g}") for o, a in self.amplitudes.items() if a is not None]
+        rows += [(_order(o), f"{a:.8g}") for o, a in self.amplitudes.items() if a is not None]
         rows.append(("normalised by", self.model.normalization))
         rows += [("note", divisor) for divisor in self.small_divisors]
         return rows
@@ -210,15 +243,19 @@ class Point(Result):
         return rf"$$ \frac{{dA}}{{dt}} = {terms.replace('+ -', '- ')} $$"
 
 
+def _order(order: str) -> str:
+    return "A_e, Padé" if order == "pade" else f"A_e, order {order}"
+
+
 class Modes(Result):
     """Profiles of the modes. `y`: heights; `modes[name][field]`: complex values; of X† by balance."""
 
-    def __init__(self, model: Any, data: dict[str, Any]) -> None:
-        super().__init__(model, data)
+    def __init__(self, model: Any, data: dict[str, Any], resolution: int = 50) -> None:
+        super().__init__(model, data, resolution)
         self.y = _array(data["y"])
         self.modes = {
-            name: {part: np.array([_complex(v) for v in values]) for part, values in parts.items()}
-            for name, parts in data["modes"].items()
+            name: {part: np.array([_complex(v) for v in values]) for part, values in parts}
+            for name, parts in data["modes"]
         }
 
     def __getitem__(self, name: str) -> dict[str, np.ndarray]:
@@ -226,6 +263,17 @@ class Modes(Result):
 
     def _rows(self) -> list[tuple[str, str]]:
         return [(name, ", ".join(parts)) for name, parts in self.modes.items()]
+
+    def to_xarray(self) -> Any:
+        """Real and imaginary parts over the cross-stream coordinate, by the names of the files: `X11_u_re`."""
+        vertical, axes = self._vertical()
+        data = {}
+        for name, parts in self.modes.items():
+            stem = "adjoint" if name == "X†" else self.model._core.plain([name])[0]
+            for plain, (part, values) in zip(self.model._core.plain(list(parts)), parts.items()):
+                for side, of in (("re", values.real), ("im", values.imag)):
+                    data[f"{stem}_{plain}_{side}"] = ((vertical,), of, f"{self._words(part)} of {name}, {side}")
+        return self._dataset(data, axes)
 
     def plot(self, name: str = "X[1;1]", ax: Any = None) -> Any:
         """One mode, imaginary parts dashed."""
@@ -243,8 +291,8 @@ class Modes(Result):
 class Amplitudes(Result):
     """dz_j/dt = Σ g z^p z̄^s. `equations[j]`: terms with `z`, `conj`, `g`, `error`; `equilibria`: states up to phase."""
 
-    def __init__(self, model: Any, data: dict[str, Any]) -> None:
-        super().__init__(model, data)
+    def __init__(self, model: Any, data: dict[str, Any], resolution: int = 50) -> None:
+        super().__init__(model, data, resolution)
         self.order: int = data["order"]
         #: Wavenumber and eigenvalue of each mode.
         self.modes = [(mode["q"][0], _complex(mode["c"])) for mode in data["modes"]]
@@ -305,8 +353,8 @@ def _monomial(term: dict[str, Any], latex: bool = False) -> str:
 class Critical(Result):
     """The first critical point (`value`, `error`, `k`, `c0`); `all` has every one of the interval."""
 
-    def __init__(self, model: Any, data: list[dict[str, Any]]) -> None:
-        super().__init__(model, data)
+    def __init__(self, model: Any, data: list[dict[str, Any]], resolution: int = 50) -> None:
+        super().__init__(model, data, resolution)
         self.all = data
         self.parameter: str = data[0]["parameter"]
         self.value: float = data[0]["value"]
@@ -324,8 +372,8 @@ class Critical(Result):
 class Certificate(Result):
     """`checks`: part, name, value, bound, verdict, reason, detail of each."""
 
-    def __init__(self, model: Any, data: dict[str, Any]) -> None:
-        super().__init__(model, data)
+    def __init__(self, model: Any, data: dict[str, Any], resolution: int = 50) -> None:
+        super().__init__(model, data, resolution)
         self.checks: list[dict[str, Any]] = data["checks"]
 
     @property
@@ -348,9 +396,17 @@ class Sweep(Result):
     columns = ("c0", "c0_error", "c2", "c2_error", "amplitude", "mean_flow", "second_harmonic")
 
     def __init__(
-        self, model: Any, axes: list[tuple[str, list[float]]], data: list[dict[str, Any]], derived: Sequence[str] = ()
+        self,
+        model: Any,
+        data: list[dict[str, Any]],
+        resolution: int,
+        axes: list[tuple[str, list[float]]],
+        fixed: dict[str, Any],
+        derived: Sequence[str] = (),
     ) -> None:
-        super().__init__(model, data)
+        super().__init__(model, data, resolution)
+        #: What does not vary: `parameters`, and `k` where that is one of them.
+        self.fixed = fixed
         self.axes = {name: np.array(values) for name, values in axes}
         shape = tuple(len(values) for _, values in axes)
 
@@ -381,6 +437,9 @@ class Sweep(Result):
     def __len__(self) -> int:
         return len(self.data)
 
+    def _facts(self) -> dict[str, Any]:
+        return self.fixed
+
     def _rows(self) -> list[tuple[str, str]]:
         rows = [(name, f"{v[0]:.6g} … {v[-1]:.6g}, {len(v)} values") for name, v in self.axes.items()]
         good = int((self.status == "ok").sum())
@@ -389,17 +448,19 @@ class Sweep(Result):
     def to_xarray(self) -> Any:
         """The same as a dataset, real and imaginary parts apart so that it can be written as NetCDF."""
         dims = tuple(self.axes)
-        data: dict[str, Any] = {}
+        columns: dict[str, np.ndarray] = {}
         for name, values in self._columns.items():
             if np.iscomplexobj(values):
-                data[f"{name}_re"] = (dims, values.real)
-                data[f"{name}_im"] = (dims, values.imag)
+                columns |= {f"{name}_re": values.real, f"{name}_im": values.imag}
             else:
-                data[name] = (dims, values)
-        data.update({name: (dims, values) for name, values in self.derived.items()})
-        data["bifurcation"] = (dims, self.bifurcation.astype(str))
-        data["status"] = (dims, self.status.astype(str))
-        return _xarray().Dataset(data, dict(self.axes), self._attributes())
+                columns[name] = values
+        columns |= self.derived
+        columns |= {"bifurcation": self.bifurcation.astype(str), "status": self.status.astype(str)}
+        meaning = self.model._core.meaning
+        data = {name: (dims, values, meaning(name)) for name, values in columns.items()}
+        axes = {name: (values, self.model.parameters.get(name, {}).get("doc") or meaning(name))
+                for name, values in self.axes.items()}
+        return self._dataset(data, axes)
 
     def plot(self, ax: Any = None) -> Any:
         """Growth rate, c2 and amplitude over the first axis."""
@@ -419,12 +480,12 @@ class Sweep(Result):
 class Pattern(Result):
     """Fields over the plane. `x`, `y`; `linear[field]`, `nonlinear[field]`: `[y][x]`; `base[field]`: `[y]`."""
 
-    def __init__(self, model: Any, data: dict[str, Any]) -> None:
-        super().__init__(model, data)
+    def __init__(self, model: Any, data: dict[str, Any], resolution: int = 50) -> None:
+        super().__init__(model, data, resolution)
         self.k: float = data["k"]
         self.amplitude: float = data["amplitude"]
         self.x, self.y = np.array(data["x"]), np.array(data["y"])
-        fields = data["fields"].items()
+        fields = data["fields"]
         self.base = {name: np.array(f["base"]) for name, f in fields}
         self.linear = {name: np.array(f["linear"]) for name, f in fields}
         self.nonlinear = {name: np.array(f["nonlinear"]) for name, f in fields}
@@ -434,13 +495,17 @@ class Pattern(Result):
 
     def to_xarray(self) -> Any:
         """Total fields over the cross-stream and the periodic coordinate."""
-        dims = (self.model.coordinate or "y", self.model.periodic)
+        vertical, axes = self._vertical()
+        (periodic,) = self.model._core.plain([self.model.periodic])
+        axes[periodic] = (self.x, "periodic coordinate")
+        dims = (vertical, periodic)
         data: dict[str, Any] = {}
-        for name in self.base:
-            data[f"{name}_base"] = (dims[:1], self.base[name])
-            data[f"{name}_linear"] = (dims, self.linear[name])
-            data[f"{name}_nonlinear"] = (dims, self.nonlinear[name])
-        return _xarray().Dataset(data, {dims[0]: self.y, dims[1]: self.x}, self._attributes())
+        for name, plain in zip(self.base, self.model._core.plain(list(self.base))):
+            words = self._words(name)
+            data[f"{plain}_base"] = (dims[:1], self.base[name], f"{words}, base state")
+            data[f"{plain}_linear"] = (dims, self.linear[name], f"{words}, base and fundamental")
+            data[f"{plain}_nonlinear"] = (dims, self.nonlinear[name], f"{words}, through third order")
+        return self._dataset(data, axes)
 
     def plot(self, field: str | None = None, ax: Any = None) -> Any:
         """One field through third order, the first by default."""

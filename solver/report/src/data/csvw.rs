@@ -12,7 +12,7 @@ pub fn beside(csv: &str) -> String {
 }
 
 /// What a column of a report's table or of a sweep is.
-fn meaning(name: &str) -> String {
+pub fn meaning(name: &str) -> String {
     if let Some(text) = row::meaning(name) {
         return text.to_owned();
     }

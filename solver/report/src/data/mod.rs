@@ -2,7 +2,7 @@
 
 pub mod csvw;
 pub mod lines;
-mod names;
+pub mod names;
 mod netcdf;
 mod npz;
 pub mod plane;

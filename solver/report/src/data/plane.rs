@@ -3,18 +3,18 @@
 use super::names::{distinct, plain};
 use super::{Array, Axis, Dataset, Fact, Facts};
 use landau_solver::model::{C64, Structure};
-use landau_solver::parameters::Parameters;
 use landau_solver::study::Setup;
 use landau_solver::study::modes::Modes;
 use landau_solver::weakly::Pattern;
+use serde_json::Value;
 
 /// Real or imaginary part.
 pub(super) type Side = fn(&C64) -> f64;
 
-/// What the numbers were computed from: parameters by name, a switch by its choice.
+/// What the numbers were computed from; `parameters` by name as a report has them, a switch by its choice.
 pub fn attributes(
     setup: &Setup,
-    parameters: &Parameters,
+    parameters: &Value,
     k: Option<f64>,
     amplitude: Option<f64>,
 ) -> Facts {
@@ -32,17 +32,22 @@ pub fn attributes(
     ];
     list.extend(k.map(|k| number("k", k)));
     list.extend(amplitude.map(|amplitude| number("amplitude", amplitude)));
-    let parameter = structure.parameters.pairs();
-    let values: Vec<String> = parameter
-        .map(|(id, info)| format!("{}={}", info.name, parameters.shown(structure, id)))
-        .collect();
-    list.push(text("parameters", &values.join(" ")));
-    let names = distinct(structure.parameters.iter().map(|info| info.name.as_str()));
-    for ((id, info), name) in structure.parameters.pairs().zip(names) {
+    // In the order of the spec.
+    let infos = structure.parameters.iter();
+    let known = infos.filter_map(|info| Some((info.name.as_str(), parameters.get(&info.name)?)));
+    let known: Vec<(&str, &Value)> = known.collect();
+    let shown = |(name, value): &(&str, &Value)| match value {
+        Value::String(choice) => format!("{name}={choice}"),
+        value => format!("{name}={}", value.as_f64().unwrap_or(f64::NAN)),
+    };
+    let all: Vec<String> = known.iter().map(shown).collect();
+    list.push(text("parameters", &all.join(" ")));
+    let names = distinct(known.iter().map(|(name, _)| *name));
+    for ((_, value), name) in known.iter().zip(names) {
         let name = format!("parameter_{name}");
-        list.push(match info.choices.is_empty() {
-            true => number(&name, parameters.values[id]),
-            false => text(&name, &parameters.shown(structure, id)),
+        list.push(match value {
+            Value::String(choice) => text(&name, choice),
+            value => number(&name, value.as_f64().unwrap_or(f64::NAN)),
         });
     }
     list
