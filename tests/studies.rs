@@ -119,3 +119,79 @@ fn a_study_in_shares() {
     let refused = landau(&["reproduce", study, "--out", &shared, "--shard", "3/2"]);
     assert_eq!(refused.status, 2, "{}", refused.err);
 }
+
+/// Neutral curves r = (1 − k²)² of two cases: two curves, each along the axis, exact; a number that is marked in one
+/// picture and asked for beside another stands once, with what is printed.
+#[test]
+fn curves_of_two_cases() {
+    let study = r#"
+title = "Neutral curves"
+source = "exact solutions"
+model = "swift_hohenberg"
+[[figure]]
+id = "1"
+title = "Neutral curves"
+[[figure.task]]
+kind = "critical"
+against = { name = "k", from = 0.8, to = 1.2, count = 5 }
+[[figure.task.asked]]
+name = "r_0"
+vary = "r"
+between = [-0.5, 0.5]
+[[figure.task.case]]
+label = "small"
+set = ["b=0.1"]
+[[figure.task.case]]
+label = "large"
+set = ["b=0.7"]
+[[figure]]
+id = "2"
+title = "Growth"
+[[figure.task]]
+kind = "sweep"
+over = { name = "k", from = 0.8, to = 1.2, count = 9 }
+columns = ["a0"]
+mark = [{ name = "k_l", vary = "k", between = [0.8, 1.0] }]
+[[figure.task.case]]
+label = ""
+set = ["r=0.1"]
+[[figure.task]]
+kind = "critical"
+asked = [{ name = "k_l", vary = "k", between = [0.8, 1.0] }]
+[[figure.task.case]]
+label = ""
+set = ["r=0.1"]
+printed = { k_l = 0.8269 }
+"#;
+    let folder = tempfile::tempdir().expect("a folder");
+    let (file, out) = (folder.path().join("s.toml"), folder.path().join("report"));
+    fs::write(&file, study).expect("written");
+    let paths = [&file, &out].map(|p| p.to_str().expect("a path"));
+    run(&["reproduce", paths[0], "--out", paths[1]]);
+    let page = fs::read_to_string(out.join("index.html")).expect("the page");
+    assert!(page.contains("r_0, r over k for small, large"), "{page}");
+    let text = fs::read_to_string(out.join("numbers.json")).expect("numbers");
+    let numbers: Vec<Value> = serde_json::from_str(&text).expect("JSON");
+    assert_eq!(numbers.len(), 11);
+    for (number, k) in numbers
+        .iter()
+        .zip([0.8_f64, 0.9, 1.0, 1.1, 1.2].iter().cycle())
+        .take(10)
+    {
+        let exact = (1.0 - k * k).powi(2);
+        close(
+            "r_0",
+            number["ours"].as_f64().expect("a number"),
+            exact,
+            1e-9,
+        );
+    }
+    let exact = (1.0 - 0.1_f64.sqrt()).sqrt();
+    close(
+        "k_l",
+        numbers[10]["ours"].as_f64().expect("k_l"),
+        exact,
+        1e-9,
+    );
+    assert_eq!(numbers[10]["printed"], 0.8269);
+}

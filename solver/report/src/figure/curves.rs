@@ -10,6 +10,9 @@ const LOWEST_LOGARITHMIC: f64 = 1e-10;
 const TITLE: usize = 42;
 const TICKS: usize = 6;
 
+/// Values that differ by a smaller part of them are one.
+const LEVEL: f64 = 1e-12;
+
 /// Points on each side of a pole that may be its needle.
 const NEEDLE: usize = 12;
 
@@ -212,6 +215,8 @@ impl Panel {
         }
         if self.logarithmic[1] {
             layout = layout.with_log_y();
+        } else if let Some([low, high]) = level(extent[1]) {
+            layout = layout.with_y_axis_min(low).with_y_axis_max(high);
         }
         for pole in &self.poles {
             let line = ReferenceLine::vertical(*pole).with_color("#999999");
@@ -302,6 +307,13 @@ pub fn panels(title: &str, panels: &[Panel]) -> Option<Drawing> {
     Some(Drawing::new(figure, says.join("; ") + "."))
 }
 
+/// The range around values that differ by rounding alone: they are level, and are drawn so.
+fn level([low, high]: [f64; 2]) -> Option<[f64; 2]> {
+    let size = low.abs().max(high.abs());
+    let room = 0.1 * if size > 0.0 { size } else { 1.0 };
+    (high >= low && high - low <= LEVEL * size).then_some([low - room, high + room])
+}
+
 /// Where a curve jumps through infinity: after which point, and the place at which 1/y vanishes. On both sides the
 /// curve runs away from zero, and the jump is no step between small values.
 fn poles(points: &[(f64, f64)]) -> Vec<(usize, f64)> {
@@ -324,7 +336,7 @@ fn poles(points: &[(f64, f64)]) -> Vec<(usize, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Panel, Style, poles};
+    use super::{Panel, Style, level, poles};
 
     fn curve(f: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
         (0..101)
@@ -340,6 +352,16 @@ mod tests {
         assert!((found[0].1 - 0.4437).abs() < 1e-3, "{found:?}");
         assert!(poles(&curve(|x| (30.0 * x).sin())).is_empty());
         assert!(poles(&curve(|x| 1000.0 * x * x)).is_empty());
+    }
+
+    /// Rounding is not magnified to a landscape.
+    #[test]
+    fn level_values() {
+        let [low, high] = level([0.348, 0.348 + 1e-16]).expect("a range");
+        assert!(low < 0.32 && high > 0.38);
+        assert_eq!(level([0.0, 0.0]), Some([-0.1, 0.1]));
+        assert_eq!(level([0.348, 0.3481]), None);
+        assert_eq!(level([f64::INFINITY, f64::NEG_INFINITY]), None);
     }
 
     /// A steep end is drawn whole.

@@ -156,8 +156,9 @@ impl Workshop<'_> {
         }
         hashes.dedup();
         let version = env!("CARGO_PKG_VERSION");
+        let commit = self.provenance.commit.as_deref().unwrap_or_default();
         Ok(format!(
-            "{stem} {spec} {} {} {version}",
+            "{stem} {spec} {} {} {version} {commit}",
             hashes.join(" "),
             self.study.resolution
         ))

@@ -142,12 +142,15 @@ pub(super) fn critical(
         for (position, asked) in asked.iter().enumerate() {
             let mut values = Panel::new(&asked.name, &axis.name, &asked.vary);
             let mut waves = Panel::new("critical wavenumber", &axis.name, "k");
-            let of = |column: usize| -> Vec<(f64, f64)> {
-                let chosen = table.rows.iter().filter(|r| r[1] == (position + 1) as f64);
-                chosen.map(|r| (r[0], r[column])).collect()
-            };
-            values.curve("", Style::Line, of(2));
-            waves.curve("", Style::Line, of(4));
+            let own = table.rows.iter().filter(|r| r[1] == (position + 1) as f64);
+            let own: Vec<&Vec<f64>> = own.collect();
+            // One curve a case, along the axis.
+            for (case, rows) in cases.iter().zip(own.chunks(axis.values().len())) {
+                let of = |column: usize| rows.iter().map(|r| (r[0], r[column])).collect();
+                let label = if cases.len() > 1 { &case.label } else { "" };
+                values.curve(label, Style::Line, of(2));
+                waves.curve(label, Style::Line, of(4));
+            }
             drawn.push(values);
             if asked.minimize.is_some() {
                 drawn.push(waves);
