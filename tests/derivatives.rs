@@ -1,7 +1,7 @@
 //! dc0/dp and dc0/dk of every model against central differences of c0 itself, parameters and wavenumbers in
 //! boundary conditions among them.
 
-use crate::support::built;
+use crate::support::{built, close, json, number};
 use landau_solver::Model;
 use landau_solver::model::C64;
 use landau_solver::spectrum::{EigenPair, follow, leading};
@@ -129,4 +129,14 @@ fn extremum_with_a_wavenumber_in_a_condition() {
     let (low, middle, high) = (growth(k - h), growth(k), growth(k + h));
     let crest = k + 0.5 * h * (low - high) / (low - 2.0 * middle + high);
     assert!((crest - k).abs() < 2e-6, "{crest} beside {k}");
+}
+
+/// A parameter that is as good as zero: its derivative is that at zero, not what rounding leaves of it.
+#[test]
+fn parameters_next_to_zero() {
+    for r in ["0", "1e-17", "-3e-12", "1e-300"] {
+        let found = json(&format!("point swift_hohenberg --k 0.9 --set r={r}"));
+        close("dc0/dr", number(&found, "/dc0/r/0"), 1.0, 1e-9);
+        assert_eq!(number(&found, "/dc0/b/0"), 0.0);
+    }
 }

@@ -242,3 +242,82 @@ fn envelopes() {
         Some(0.264_406_879_807),
     );
 }
+
+/// τ0 ∂A/∂t = ε A + ξ0² ∂²A/∂x² − g |A|²A at the extremum of a neutral curve.
+#[test]
+fn onsets() {
+    let critical = |line: &str| json(&format!("critical {line}"));
+    let values = |found: &serde_json::Value| {
+        ["tau0", "xi0_squared", "g"].map(|name| number(found, &format!("/envelope/{name}")))
+    };
+    // Free walls, exact: k² = π²/2, σ² + … = 0 and Malkus & Veronis (1958).
+    for pr in [0.71, 7.0] {
+        let found = critical(&format!(
+            "rayleigh_benard --vary Ra --from 500 --to 900 --minimize k=1.5:3 --set walls=free --set Pr={pr} -M 30"
+        ));
+        let pi2 = std::f64::consts::PI.powi(2);
+        let exact = [
+            2.0 * (1.0 + 1.0 / pr) / (3.0 * pi2),
+            8.0 / (3.0 * pi2),
+            0.75 * pi2,
+        ];
+        for (found, exact) in values(&found).iter().zip(exact) {
+            close("free walls", *found, exact, 1e-8 * exact);
+        }
+    }
+    // Rigid walls: Cross & Hohenberg (1993), equation (8.3): 1/τ0 = 19.65 Pr/(Pr + 0.5117), ξ0² = 0.148.
+    for pr in [0.7, 1.0, 10.0] {
+        let found = critical(&format!(
+            "rayleigh_benard --vary Ra --from 1500 --to 2000 --minimize k=2.5:4 --set Pr={pr} -M 30"
+        ));
+        let [tau0, xi0_squared, _] = values(&found);
+        close("τ0", tau0, (pr + 0.5117) / (19.65 * pr), 2e-5);
+        close("ξ0²", xi0_squared, 0.148, 5e-4);
+    }
+    // A parameter that is zero at onset measures the distance itself: τ0 = 1, ξ0² = 4, g = 3 − 4b² − 2b²/9.
+    let found =
+        critical("swift_hohenberg --vary r --from -0.3 --to 0.4 --minimize k=0.8:1.3 --set b=0.5");
+    assert_eq!(found["envelope"]["epsilon"], "r");
+    for (found, exact) in values(&found).iter().zip([1.0, 4.0, 3.0 - 19.0 / 18.0]) {
+        close("Swift-Hohenberg", *found, exact, 1e-9);
+    }
+    // ∂ψ/∂t = [(r − 2)(1 + i s) + i w − (1 + i b)(1 + ∂²)²] ψ − (1 + i c) |ψ|²ψ for ψ = p + i q = 2 A e^{iθ}; onset from
+    // above in r, or from below in its negative.
+    let spec = "model wave \"Complex Swift-Hohenberg equation\";
+coordinates { x: periodic; }
+parameters { r = 2; w = 1; s = 0.3; b = 0.7; c = -0.4; way = up in {up, down}; }
+fields { p; q; }
+let e = select way { up: r - 2, down: 2 - r };
+let wide(f) = f + 2*dx(dx(f)) + dx(dx(dx(dx(f))));
+balance {
+    real:      dt(p) = e*p - (e*s + w)*q - wide(p) + b*wide(q) - (p^2 + q^2)*(p - c*q);
+    imaginary: dt(q) = e*q + (e*s + w)*p - wide(q) - b*wide(p) - (p^2 + q^2)*(q + c*p);
+}
+base { p = 0; q = 0; }
+amplitude { p = 1; }
+";
+    let path = written("wave.model", spec);
+    for (way, words) in [("up", "r/2.000000 − 1"), ("down", "1 − r/2.000000")] {
+        let found = critical(&format!(
+            "{} --vary r --from 1.5 --to 2.6 --minimize k=0.7:1.2 --set way={way}",
+            path.display()
+        ));
+        close("r_c", number(&found, "/value"), 2.0, 1e-10);
+        for (found, exact) in values(&found).iter().zip([0.5, 2.0, 2.0]) {
+            close(way, *found, exact, 1e-8);
+        }
+        assert_eq!(found["envelope"]["epsilon"], words);
+        // The mode may be ψ's or that of its conjugate.
+        let sign = number(&found, "/c0/1");
+        close("w", sign.abs(), 1.0, 1e-10);
+        for (name, exact) in [
+            ("frequency_shift", 0.3),
+            ("dispersion", 0.7),
+            ("nonlinear_dispersion", -0.4),
+        ] {
+            let value = number(&found, &format!("/envelope/{name}"));
+            close(name, value, sign * exact, 1e-8);
+        }
+        close("v", number(&found, "/envelope/group_velocity"), 0.0, 1e-8);
+    }
+}

@@ -13,13 +13,13 @@ use landau_solver::file::destination;
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{Quantity, Question};
 use landau_solver::study::minimise::minimise;
+use landau_solver::study::onset::CriticalReport;
 use landau_solver::study::point::PointReport;
 use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::verify::Certificate;
 use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality};
-use landau_solver::words;
 use serde_json::json;
 
 pub fn base(setup: &Setup, points: usize, files: &Files, common: &Common) -> Result<()> {
@@ -119,11 +119,12 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
     if let Some(k) = options.k {
         check_wavenumber(k)?;
     }
-    let (quantity, name) = match options.of {
-        Of::Growth => (Quantity::Growth, "growth"),
-        Of::C2 => (Quantity::C2, "c2"),
-        Of::Resonance => (Quantity::Resonance, "resonance"),
+    let quantity = match options.of {
+        Of::Growth => Quantity::Growth,
+        Of::C2 => Quantity::C2,
+        Of::Resonance => Quantity::Resonance,
     };
+    let name = quantity.name();
     let (from, to, k) = (options.from, options.to, options.k);
     let question = Question {
         axis,
@@ -162,36 +163,19 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
             figure::critical(&title, "k", name, &scan)
         })?;
     }
-    if found.len() > 1 {
-        let others: Vec<String> = found[1..]
-            .iter()
-            .map(|c| format!("{:.8}", c.value))
-            .collect();
+    let found = CriticalReport::new(setup, &question, found, range_of_k.is_some())?;
+    let (first, others) = (&found.found[0], &found.found[1..]);
+    if !others.is_empty() {
+        let others: Vec<String> = others.iter().map(|c| format!("{:.8}", c.value)).collect();
         eprintln!(
             "note: further points in the interval: {}",
             others.join(", ")
         );
     }
     if common.json {
-        say!(
-            "{}",
-            json!({
-                "parameter": options.vary,
-                "of": name,
-                "value": words::number(first.value),
-                "error": words::number(first.error),
-                "k": words::number(first.k),
-                "c0": words::complex(first.c0),
-            })
-        );
+        say!("{}", found.json(first));
     } else {
-        say!(
-            "{} = {} (of {name}) at k = {:.10}, c0 = {}",
-            options.vary,
-            words::with_error(first.value, first.error),
-            first.k,
-            words::shown(first.c0)
-        );
+        say!("{found}");
     }
     Ok(())
 }

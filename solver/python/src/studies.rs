@@ -11,6 +11,7 @@ use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{self, Quantity, Question};
 use landau_solver::study::minimise::minimise;
 use landau_solver::study::modes::Modes;
+use landau_solver::study::onset::CriticalReport;
 use landau_solver::study::point::PointReport;
 use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::row::Row;
@@ -248,9 +249,8 @@ impl Core {
                 Some(range) => vec![minimise(&setup, question, range, watch)?],
                 None => critical::critical(&setup, question, watch)?,
             };
-            let points = found.iter().map(|c| {
-                json!({"parameter": vary, "of": of, "value": c.value, "error": c.error, "k": c.k, "c0": words::complex(c.c0)})
-            });
+            let found = CriticalReport::new(&setup, &question, found, minimize.is_some())?;
+            let points = found.found.iter().map(|point| found.json(point));
             Ok(points.collect::<Value>().to_string())
         })
     }

@@ -37,6 +37,8 @@ def test_published_numbers():
     onset = convection.critical("Ra", (1500, 2000), minimize=(2.5, 4.0), M=32)
     assert onset.value == pytest.approx(1707.761777104718, rel=1e-10)
     assert onset.k == pytest.approx(3.116323554821122, rel=1e-8)
+    assert onset.envelope["xi0_squared"] == pytest.approx(0.14803445243, rel=1e-8)
+    assert "tau0" in repr(onset)
     rolls = convection.point(k=3.116323554821122, Ra=1707.761777104718, Pr=7, M=32)
     assert rolls.c2.real == pytest.approx(-238.7135246614527, rel=1e-8)
     pair = Model("swift_hohenberg").amplitudes([0.62, 1.24], r=0.3, b=0.5)

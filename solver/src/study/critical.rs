@@ -29,6 +29,17 @@ pub enum Quantity {
     Resonance,
 }
 
+impl Quantity {
+    /// As the command line and its answers call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::Growth => "growth",
+            Quantity::C2 => "c2",
+            Quantity::Resonance => "resonance",
+        }
+    }
+}
+
 /// A question of the command `critical`.
 #[derive(Clone, Copy, Debug)]
 pub struct Question {

@@ -9,6 +9,7 @@ pub use journal::journal_path;
 pub use progress::{Progress, Silent};
 pub mod minimise;
 pub mod modes;
+pub mod onset;
 pub mod orders;
 pub mod point;
 pub mod profiles;

@@ -14,6 +14,8 @@ use std::sync::Arc;
 
 /// Relative step of the difference formula, of fourth order, for the operators.
 const STEP: f64 = 1e-3;
+/// Times that another size has to be larger to be tried.
+const LARGER: f64 = 1e3;
 /// What rounding leaves of a base state that is solved for anew, relative.
 const ROUNDING: f64 = 1e-13;
 
@@ -63,6 +65,8 @@ pub fn parameters(
     found.into_iter().map(|(id, p)| (id, follow(p))).collect()
 }
 
+/// With a step that belongs to the parameter's value; where that is as good as zero, and rounding hides what the step
+/// does, to its default, or to one.
 fn partial(
     setup: &Setup,
     base: &BaseState,
@@ -71,8 +75,36 @@ fn partial(
     automatic: &[ParameterId],
 ) -> Result<Partial> {
     let info = &setup.model.structure().parameters[parameter];
+    let mut sizes: Vec<f64> = Vec::new();
+    for size in [base.parameters.values[parameter], info.default, 1.0] {
+        let larger = sizes.last().is_none_or(|last| size.abs() > LARGER * last);
+        if size != 0.0 && larger {
+            sizes.push(size.abs());
+        }
+    }
+    let by = |size: &f64| partial_by(setup, base, pair, parameter, automatic, STEP * size);
+    let (own, larger) = sizes.split_first().unwrap_or((&1.0, &[]));
+    let found = by(own)?;
+    let acts =
+        |p: &Partial| p.growth != C64::new(0.0, 0.0) || p.conditions.iter().any(|c| *c != 0.0);
+    if acts(&found) {
+        return Ok(found);
+    }
+    // A larger step may leave where the model makes sense.
+    let mut others = larger.iter().filter_map(|size| by(size).ok());
+    Ok(others.find(acts).unwrap_or(found))
+}
+
+fn partial_by(
+    setup: &Setup,
+    base: &BaseState,
+    pair: &EigenPair,
+    parameter: ParameterId,
+    automatic: &[ParameterId],
+    step: f64,
+) -> Result<Partial> {
+    let info = &setup.model.structure().parameters[parameter];
     let value = base.parameters.values[parameter];
-    let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
     let shifted = |shift: f64| -> Result<Partial> {
         let mut moved = setup.clone();
         // The formula may reach past a declared range.
