@@ -361,15 +361,16 @@ class Critical(Result):
         self.error: float = data[0]["error"]
         self.k: float = data[0]["k"]
         self.c0 = _complex(data[0]["c0"])
-        #: With `minimize`: tau0, xi0_squared, g of the envelope equation, and what a wave has besides.
-        self.envelope: dict[str, float | None] | None = data[0].get("envelope")
+        #: With `minimize`: epsilon in words, tau0, xi0_squared, g of the envelope equation, what a wave has besides.
+        self.envelope: dict[str, Any] | None = data[0].get("envelope")
 
     def _rows(self) -> list[tuple[str, str]]:
         rows = [
             (p["parameter"], f"{p['value']:.10g} ± {p['error']:.0e} (of {p['of']}) at k = {p['k']:.10g}")
             for p in self.all
         ]
-        return rows + [(name, f"{value:.9g}") for name, value in (self.envelope or {}).items() if value]
+        known = [(name, value) for name, value in (self.envelope or {}).items() if value]
+        return rows + [(name, value if isinstance(value, str) else f"{value:.9g}") for name, value in known]
 
 
 class Certificate(Result):
