@@ -3,7 +3,7 @@
 //! τ0 (∂t + v ∂x) A = ε (1 + i s) A + ξ0² (1 + i b) ∂x²A − g (1 + i c) |A|²A
 //!
 //! with ε = ±(p − p_c)/|p_c|, positive where the base state is unstable (±p where p_c is zero):
-//! 1/τ0 = da0/dε,  ξ0² = −½ τ0 Re c0'',  g = −τ0 Re c2 (Cross & Hohenberg 1993, section IV.A).
+//! 1/τ0 = da0/dε,  ξ0² = −½ τ0 Re c0'',  g = −τ0 Re c2 (Newell & Whitehead 1969, Segel 1969).
 
 use super::critical::{Critical, Quantity, Question};
 use super::{Axis, Setup, sensitivity};
