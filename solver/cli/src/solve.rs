@@ -124,7 +124,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         Of::C2 => Quantity::C2,
         Of::Resonance => Quantity::Resonance,
     };
-    let name = quantity.name();
+    let symbol = quantity.symbol();
     let (from, to, k) = (options.from, options.to, options.k);
     let question = Question {
         axis,
@@ -141,7 +141,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         None => {
             let scan = criticality::scan(setup, question, &bar)?;
             picture::drawn(options.plot.as_deref(), || {
-                figure::critical(&setup.model.structure().title, &options.vary, name, &scan)
+                figure::critical(&setup.model.structure().title, &options.vary, symbol, &scan)
             })?;
             scan.critical(&question)?
         }
@@ -160,7 +160,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         let scan = criticality::scan(&at_extremum, over_k, &bar)?;
         picture::drawn(Some(plot), || {
             let title = format!("{} = {:.6}", options.vary, first.value);
-            figure::critical(&title, "k", name, &scan)
+            figure::critical(&title, "k", symbol, &scan)
         })?;
     }
     let found = CriticalReport::new(setup, &question, found, range_of_k.is_some())?;

@@ -38,6 +38,15 @@ impl Quantity {
             Quantity::Resonance => "resonance",
         }
     }
+
+    /// What passes through zero, as a formula.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Quantity::Growth => "a0",
+            Quantity::C2 => "a2",
+            Quantity::Resonance => "1/a2",
+        }
+    }
 }
 
 /// A question of the command `critical`.
