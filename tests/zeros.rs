@@ -169,3 +169,36 @@ amplitude {{ a = 1; }}
         }
     }
 }
+
+/// A critical value of zero is found like any other: inside the interval, at its ends, on a point of the scan; its
+/// error covers it.
+#[test]
+fn roots_at_zero() {
+    let spec = "model level \"Neutral where r is zero\";
+coordinates { x: periodic; y: 0..1; }
+parameters { r = 0.1; D = 1 in 0..; }
+fields { u; }
+balance { e: dt(u) = (r + D*pi^2 + 4)*u + 4*dx(dx(u)) + D*dy(dy(u)) - u^3; }
+base { u = 0; }
+boundary { at y = 0 { u = 0; } at y = 1 { u = 0; } }
+";
+    let level = written("level.model", spec).display().to_string();
+    let cases = [
+        (level.as_str(), "--from -1 --to 1.7 --k 1"),
+        (&level, "--from -1 --to 1 --k 1 --set D=100 -M 30"),
+        (&level, "--from -1 --to 1 --k 1 --set D=1e4 -M 90"),
+        (&level, "--from -1 --to 0 --k 1"),
+        (&level, "--from 0 --to 1 --k 1"),
+        ("swift_hohenberg", "--from -0.5 --to 0 --k 1"),
+        ("swift_hohenberg", "--from 0 --to 0.5 --k 1"),
+        (
+            "swift_hohenberg",
+            "--from -0.3 --to 0.4 --minimize k=0.8:1.3",
+        ),
+    ];
+    for (model, options) in cases {
+        let found = json(&format!("critical {model} --vary r {options}"));
+        let (value, error) = (number(&found, "/value"), number(&found, "/error"));
+        assert!(value.abs() <= error && error < 1e-7, "{options}: {found}");
+    }
+}

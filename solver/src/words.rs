@@ -86,6 +86,9 @@ pub fn with_error(value: f64, error: f64) -> String {
     } else {
         10.0
     };
+    if value.abs() <= 0.1 * error {
+        return format!("0 ± {error:.0e}");
+    }
     if value.abs() < 1e-4 || value.abs() >= 1e8 {
         return format!("{value:.9e} ± {error:.0e}");
     }

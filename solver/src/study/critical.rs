@@ -15,6 +15,8 @@ const SCAN: usize = 61;
 const STRIDE: usize = 6;
 /// Relative accuracy of roots.
 pub(super) const TOLERANCE: f64 = 1e-12;
+/// What counts as zero of a quantity, relative to its size: of the growth rate, to the slow eigenvalues.
+const ROUNDING: f64 = 1e-12;
 /// A root that another M moves by a larger part of it is not converged.
 const UNRESOLVED: f64 = 1e-2;
 
@@ -183,7 +185,12 @@ impl Sampler<'_> {
             Ok(last.value)
         };
         let (x, value) = brent(evaluate, (a.x, a.value), (b.x, b.value), span)?;
-        if value.abs() > 0.1 * a.value.abs().min(b.value.abs()) {
+        // One of the two may be the root itself, to rounding.
+        let rounding = match self.question.quantity {
+            Quantity::Growth => ROUNDING * a.carried.pair.scale.max(a.c0.norm()),
+            _ => ROUNDING * a.value.abs().max(b.value.abs()),
+        };
+        if value.abs() > (0.1 * a.value.abs().min(b.value.abs())).max(rounding) {
             return Ok(None);
         }
         let root = self.sample(x, Some(&near(x, a)))?;
@@ -217,7 +224,9 @@ impl Sampler<'_> {
                 .map_or(f64::INFINITY, |(value, _)| value);
             error = error.max(((value - root.value) / slope).abs());
         }
-        if error > UNRESOLVED * root.x.abs() {
+        // A root at zero has no size of its own: one that is small against the interval will do.
+        let interval = UNRESOLVED * (self.question.to - self.question.from).abs();
+        if error > UNRESOLVED * root.x.abs().max(interval) {
             let what = format!("the critical point near {}", root.x);
             let how_far = format!("another M moves it by {error:.1e}");
             return Err(Error::unresolved(what, m, how_far));
@@ -260,8 +269,10 @@ pub fn scan(setup: &Setup, question: Question, progress: &dyn Progress) -> Resul
     progress.begin(SCAN + SCAN.div_ceil(STRIDE));
     let samples = sampler.scan(&points, progress)?;
     let mut found = Vec::new();
-    for pair in samples.windows(2) {
-        if pair[0].value == 0.0 || pair[0].value * pair[1].value < 0.0 {
+    let last = samples.len().saturating_sub(2);
+    for (index, pair) in samples.windows(2).enumerate() {
+        let [a, b] = [pair[0].value, pair[1].value];
+        if a == 0.0 || a * b < 0.0 || (index == last && b == 0.0) {
             found.extend(sampler.refine(&pair[0], &pair[1])?);
         }
     }

@@ -25,6 +25,8 @@ const METHOD: Newton = Newton {
 };
 /// Relative change of the parameter by which derivatives along it are differenced.
 const NUDGE: f64 = 1e-6;
+/// What rounding leaves undecided of a growth rate, relative to the slow ones.
+const ROUNDING: f64 = 1e-14;
 /// Times that a higher crest may turn up at what seemed a root.
 const MOST_CRESTS: usize = 4;
 
@@ -236,6 +238,8 @@ impl Search<'_> {
             )));
         }
         let (k, c0) = (pair.k, pair.c);
+        // What rounding of the growth rate makes of the root, which may be zero.
+        let rounding = (ROUNDING * c0.norm().max(pair.scale) / slope).abs();
         let question = Question {
             k: Some(k),
             ..self.question
@@ -252,7 +256,10 @@ impl Search<'_> {
         };
         Ok(Critical {
             value: x,
-            error: sampler.error(&sample, slope)?.max(TOLERANCE * x.abs()),
+            error: sampler
+                .error(&sample, slope)?
+                .max(TOLERANCE * x.abs())
+                .max(rounding),
             k,
             c0,
         })
