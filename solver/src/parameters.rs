@@ -2,6 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::model::{CaseId, Id, ParameterId, Structure, Table, nearest};
+use crate::words;
+use serde_json::Value;
 
 /// Values of all parameters of a model; those set to `auto` are still to be determined.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,6 +115,31 @@ impl Parameters {
             Some(choice) => choice.clone(),
             None => format!("{}", self.values[parameter]),
         }
+    }
+
+    /// All by name, switches by the name of their choice.
+    pub fn json(&self, structure: &Structure) -> Value {
+        let named = structure.parameters.pairs().map(|(id, info)| {
+            let value = match info.choices.is_empty() {
+                true => words::number(self.values[id]),
+                false => Value::String(self.shown(structure, id)),
+            };
+            (info.name.clone(), value)
+        });
+        Value::Object(named.collect())
+    }
+
+    /// Those that are not at their defaults: `S = 200`.
+    pub fn changed(&self, structure: &Structure) -> Vec<String> {
+        let own = structure.parameters.pairs().filter_map(|(id, info)| {
+            let value = match self.automatic[id] {
+                true => "auto".to_owned(),
+                false => self.shown(structure, id),
+            };
+            let moved = self.automatic[id] || self.values[id] != info.default;
+            moved.then(|| format!("{} = {value}", info.name))
+        });
+        own.collect()
     }
 }
 

@@ -1,9 +1,7 @@
 //! Numbers in words and in JSON.
 
 use crate::model::C64;
-use crate::parameters::Parameters;
-use crate::study::Setup;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// A finite number, or null.
 pub fn number(value: f64) -> Value {
@@ -17,36 +15,6 @@ pub fn number(value: f64) -> Value {
 /// [re, im]
 pub fn complex(value: C64) -> Value {
     Value::Array(vec![number(value.re), number(value.im)])
-}
-
-/// All parameters by name, switches by the name of their choice.
-pub fn parameters(setup: &Setup, parameters: &Parameters) -> Value {
-    let structure = setup.model.structure();
-    let mut map = Map::new();
-    for (id, info) in structure.parameters.pairs() {
-        let value = if info.choices.is_empty() {
-            number(parameters.values[id])
-        } else {
-            Value::String(parameters.shown(structure, id))
-        };
-        map.insert(info.name.clone(), value);
-    }
-    Value::Object(map)
-}
-
-/// The parameters that are not at their defaults, and the wavenumber: `S = 200, k = 0.16`.
-pub fn changed(setup: &Setup, k: f64) -> String {
-    let structure = setup.model.structure();
-    let own = structure.parameters.pairs().filter_map(|(id, info)| {
-        let value = match setup.parameters.automatic[id] {
-            true => "auto".to_owned(),
-            false => setup.parameters.shown(structure, id),
-        };
-        let moved = setup.parameters.automatic[id] || setup.parameters.values[id] != info.default;
-        moved.then(|| format!("{} = {value}", info.name))
-    });
-    let all: Vec<String> = own.chain([format!("k = {}", short(k))]).collect();
-    all.join(", ")
 }
 
 /// A number in a title: six decimals at most.

@@ -47,7 +47,7 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
     let expressions = shaded(setup, options)?;
     let found = expand(&point, amplitude, window, &expressions)?;
     let vector = options.arrows.as_deref().map(components).transpose()?;
-    let parameters = words::parameters(setup, &state.parameters);
+    let parameters = state.parameters.json(state.structure());
     let attributes = attributes(setup, &parameters, Some(k), Some(amplitude));
     for name in vector.iter().flatten() {
         named(&found, name)?;
@@ -141,12 +141,11 @@ fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> 
         false => Part::Total,
     };
     let structure = setup.model.structure();
-    let title = format!(
-        "{}, {}, A = {:.4}",
-        structure.title,
-        words::changed(setup, k),
-        found.amplitude
-    );
+    let mut facts = vec![structure.title.clone()];
+    facts.extend(setup.parameters.changed(structure));
+    facts.push(format!("k = {}", words::short(k)));
+    facts.push(format!("A = {:.4}", found.amplitude));
+    let title = facts.join(", ");
     if found.y.len() < 2 {
         let drawn = pattern_lines(structure, found, &title, part);
         return drawn.ok_or_else(|| Error::computation("the pattern has no finite value"));

@@ -374,7 +374,7 @@ impl Core {
                 json!([field.name, value])
             });
             let object = json!({
-                "parameters": words::parameters(&setup, &base.parameters),
+                "parameters": base.parameters.json(base.structure()),
                 "k": k,
                 "amplitude": amplitude,
                 "x": found.x,

@@ -152,7 +152,7 @@ impl AmplitudesReport {
         Ok(AmplitudesReport {
             model: structure.name.clone(),
             title: structure.title.clone(),
-            parameters: words::parameters(setup, &base.parameters),
+            parameters: base.parameters.json(base.structure()),
             resolution: setup.resolution,
             has_coordinate: structure.coordinate.is_some(),
             order,

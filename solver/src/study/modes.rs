@@ -7,7 +7,6 @@ use crate::model::{C64, Jet};
 use crate::problem::{LinearProblem, Problem};
 use crate::space::Place;
 use crate::weakly::{Expansion, Mode, Selection};
-use crate::words;
 use serde_json::Value;
 
 /// Heights of a profile.
@@ -64,7 +63,7 @@ impl Modes {
             profiles.push(adjoint(problem, &mode, &places)?);
         }
         Ok(Modes {
-            parameters: words::parameters(setup, &base.parameters),
+            parameters: base.parameters.json(base.structure()),
             k,
             c0: point.c0,
             heights: places.iter().map(|&at| problem.space().y(at)).collect(),

@@ -112,7 +112,7 @@ impl PointReport {
             small_divisors,
             model: structure.name.clone(),
             title: structure.title.clone(),
-            parameters: words::parameters(setup, &base.parameters),
+            parameters: base.parameters.json(base.structure()),
             k: point.k(),
             resolution: setup.resolution,
             has_coordinate: structure.coordinate.is_some(),

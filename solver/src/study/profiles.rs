@@ -61,7 +61,7 @@ impl BaseReport {
         Ok(BaseReport {
             model: structure.name.clone(),
             title: structure.title.clone(),
-            parameters: words::parameters(setup, &state.parameters),
+            parameters: state.parameters.json(state.structure()),
             degree: state.degree,
             tail: state.tail(),
             residual: state.residual,

@@ -54,7 +54,7 @@ impl SpectrumReport {
         Ok(SpectrumReport {
             model: structure.name.clone(),
             title: structure.title.clone(),
-            parameters: words::parameters(setup, &base.parameters),
+            parameters: base.parameters.json(base.structure()),
             k,
             resolution: setup.resolution,
             has_coordinate: structure.coordinate.is_some(),

@@ -2,7 +2,7 @@
 
 use landau_solver::model::greek;
 
-/// `X13` for X[1;3], `theta1y` for theta + 1 − y, `phi` for φ.
+/// `X13` for `X[1;3]`, `theta1y` for theta + 1 − y, `phi` for φ.
 pub fn plain(name: &str) -> String {
     let mut text = String::new();
     for letter in name.chars() {

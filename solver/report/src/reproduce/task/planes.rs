@@ -12,7 +12,6 @@ use landau_solver::error::{Error, Result};
 use landau_solver::model::Expression;
 use landau_solver::study::{self, Setup};
 use landau_solver::weakly::{Pattern, PlaneField, Selection, Window, pattern as expand};
-use landau_solver::words;
 use nalgebra::{Matrix2, Vector2};
 
 /// Points along x and y of pictures, and of the field that a vortex is measured in.
@@ -99,7 +98,7 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
             written: &|name| shop.written(name),
         };
         let drawing = pattern_pair(structure, &found, &view);
-        let parameters = words::parameters(&setup, &setup.base(None)?.parameters);
+        let parameters = setup.base(None)?.parameters.json(structure);
         let facts = attributes(&setup, &parameters, Some(k), Some(found.amplitude));
         let vector = wanted.arrows.map(|[u, v]| [u.as_str(), v.as_str()]);
         let data = dataset(&setup, &found, facts, vector);
