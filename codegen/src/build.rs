@@ -1,7 +1,9 @@
 //! The driver for a build script: every `.model` file of a folder becomes a Rust module.
 
 use crate::diagnostic::{Diagnostics, SourceFile};
-use crate::{Sources, emit, generate};
+use crate::emit;
+use crate::generate::generate;
+use crate::sources::Sources;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

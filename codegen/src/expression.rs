@@ -1,11 +1,11 @@
 //! Expressions of the spec language that are wanted beside a model: read, opened, lowered to a kernel.
 
-use crate::Sources;
 use crate::derive::Opener;
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, SourceFile};
 use crate::graph::{Node, Operator};
 use crate::kernel::{Lowering, jets};
 use crate::model::resolve;
+use crate::sources::Sources;
 use landau_contract::{Expression, RESIDUAL_INPUTS, StateLayout};
 
 /// Compiles an expression in the names of a spec, for a model whose point state is laid out so.

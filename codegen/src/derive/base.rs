@@ -1,9 +1,9 @@
 //! The base state as a problem of its own: its balances, what they are solved for, its integrals.
 
-use super::form::Form;
 use super::offsets::{Offsets, Orders, offsets};
 use super::{Deriver, Opener};
 use crate::diagnostic::Diagnostic;
+use crate::form::Form;
 use crate::graph::{BalanceId, FieldId, Id, Node, Table};
 use landau_contract::{BaseRowId, SolvedId};
 

@@ -1,9 +1,9 @@
 //! What the form of a model must have before operators make sense of it.
 
 use super::Deriver;
-use super::form::Form;
 use super::linear::DirectTerm;
 use crate::diagnostic::{Diagnostic, Location};
+use crate::form::Form;
 use crate::graph::{BalanceId, Table};
 
 impl Deriver<'_> {

@@ -6,11 +6,11 @@
 //! the collocated problem decides.
 
 use super::boundary::{Simplifier, at_zero_wavenumber, demands};
-use super::form::Form;
 use super::linear::DirectTerm;
 use super::wall::{BaseRules, CaseProblem, Walls, at_end};
 use super::{Case, Deriver};
 use crate::diagnostic::Diagnostic;
+use crate::form::Form;
 use crate::graph::{
     BalanceId, FieldId, Graph, Id, Jet, LinearSystem, Node, Rational, Table, Variable,
 };

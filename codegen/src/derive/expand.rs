@@ -4,9 +4,9 @@
 //! p = p⁰ + p⁰_n n' + p⁰_T T' + ½ p⁰_nn n'² + …, and derivatives act on the series afterwards, so
 //! that coefficients such as p⁰_nny come out as the literature writes them.
 
-use super::form::Form;
 use super::open::Dependence;
 use super::value::base_value;
+use crate::form::Form;
 use crate::graph::{
     FieldId, Function, Graph, Id, Jet, LawAtom, Node, Operator, ParameterId, Rational, Table,
     Variable,

@@ -2,7 +2,7 @@
 //!
 //! L = Σ c(y) ∂x^a |∂x|^b ∂y^d per (row, field); the mass matrix M0 likewise, with one ∂t.
 
-use super::form::Form;
+use crate::form::Form;
 use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Rational, Table, Variable};
 use num_traits::One;
 use std::collections::BTreeMap;

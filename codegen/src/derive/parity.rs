@@ -4,7 +4,7 @@
 //! sign: r_i + Σ s_f + (number of ∂x) = 0 mod 2, a linear system over two elements, derived from the
 //! expanded balances and never declared.
 
-use super::form::Form;
+use crate::form::Form;
 use crate::graph::{BalanceId, FieldId, Table};
 use landau_contract::Id as _;
 

@@ -4,8 +4,8 @@ use super::Deriver;
 use super::boundary::{
     BoundaryForm, Combination, Reduced, Simplifier, boundary_form, reduce, split,
 };
-use super::form::Form;
 use super::linear::{AdjointTerm, DirectTerm};
+use crate::form::Form;
 use crate::graph::{BalanceId, FieldId, Graph, Id, Node, ParameterId, Rational, Table, Variable};
 use crate::model::End;
 use num_traits::One;

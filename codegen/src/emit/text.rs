@@ -1,6 +1,7 @@
 //! The derived operators as lines in the notation of the literature, as text or as LaTeX.
 
-use crate::derive::{AdjointCondition, Case, CaseClosure, Derivation, Form, Term};
+use crate::derive::{AdjointCondition, Case, CaseClosure, Derivation, Term};
+use crate::form::Form;
 use crate::formula::{self, Arrangement, Coefficient, Formula, Letters, Mark, latex_words, plain};
 use crate::graph::{BalanceId, FieldId, Id, Jet, Table};
 use crate::model::End;

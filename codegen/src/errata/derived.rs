@@ -1,8 +1,9 @@
 //! What was derived, as one expression a subject.
 
 use super::{Formula, Subject};
-use crate::derive::{Case, Derivation, Form};
+use crate::derive::{Case, Derivation};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, SourceFile, nearest};
+use crate::form::Form;
 use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, ParameterId, Rational, Table};
 use landau_contract::Id as Position;
 use num_traits::One;

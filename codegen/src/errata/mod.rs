@@ -10,8 +10,9 @@ mod terms;
 
 pub use latex::symbols;
 
-use crate::derive::{Derivation, Form, Monomial};
+use crate::derive::Derivation;
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, SourceFile};
+use crate::form::{Form, Monomial};
 use crate::graph::{Graph, Id, Node, Rational};
 use crate::model::End;
 use latex::{Letters, Vocabulary};

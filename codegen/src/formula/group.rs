@@ -6,7 +6,7 @@
 //! (μ⁰_n n' + μ⁰_T T') (2 u'_xx + u'_yy + …).
 
 use super::{Formula, Letters, Mark};
-use crate::derive::{Form, Monomial};
+use crate::form::{Form, Monomial};
 use crate::graph::{Graph, Id, Jet, LawAtom, LawId, Node, Rational};
 use num_traits::{One, Signed};
 

@@ -1,6 +1,6 @@
 //! Homogeneous forms → symmetric multilinear forms.
 
-use crate::derive::{Form, Monomial};
+use crate::form::{Form, Monomial};
 use crate::graph::{BalanceId, Graph, Id, Jet, Node, Rational, Table};
 use num_traits::One;
 use std::collections::{BTreeMap, BTreeSet, HashMap};

@@ -3,8 +3,8 @@
 use super::import::load_imports;
 use super::scope::{Names, Scope};
 use super::{Model, statement};
-use crate::Sources;
 use crate::diagnostic::Diagnostics;
+use crate::sources::Sources;
 use crate::syntax::parse_model;
 use std::collections::BTreeMap;
 

@@ -6,9 +6,9 @@ mod text;
 
 pub use formulas::Formulas;
 
-use super::Workshop;
 use super::outcome::{Outcome, Picture};
 use super::study::Figure;
+use super::workshop::{Provenance, Workshop};
 use crate::data::csvw;
 use landau_solver::error::Result;
 use landau_solver::file::write_whole;
@@ -16,16 +16,6 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use text::rich;
 
 const STYLE: &str = include_str!("style.css");
-
-/// Where the page came from.
-pub struct Provenance {
-    /// The command that made it.
-    pub command: String,
-    /// When, by RFC 3339.
-    pub date: String,
-    /// The commit that the program was built from, where that was known.
-    pub commit: Option<String>,
-}
 
 pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) -> Result<()> {
     let study = shop.study;

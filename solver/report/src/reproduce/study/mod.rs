@@ -1,6 +1,7 @@
 //! A study file: which models, parameters and sweeps make which figure, and what was printed.
 
 mod axis;
+mod parts;
 mod place;
 mod printed;
 
@@ -375,28 +376,6 @@ pub enum Task {
         /// The field whose maximum is located.
         shade: String,
     },
-}
-
-impl Task {
-    /// What varies, where something does.
-    fn axis(&self) -> Option<&Axis> {
-        match self {
-            Task::Spectrum { over, .. }
-            | Task::Sweep { over, .. }
-            | Task::Resonance { over, .. }
-            | Task::Orders { over, .. }
-            | Task::SecondHarmonic { over, .. }
-            | Task::Convergence { over, .. }
-            | Task::Law { over, .. }
-            | Task::Circulation { over, .. } => Some(over),
-            Task::Critical { against, .. } => against.as_ref(),
-            Task::Profiles { .. }
-            | Task::Claims { .. }
-            | Task::Values { .. }
-            | Task::PowerLaw { .. }
-            | Task::Pattern { .. } => None,
-        }
-    }
 }
 
 fn two() -> f64 {

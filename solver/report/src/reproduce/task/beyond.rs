@@ -1,8 +1,8 @@
 //! Beyond cubic order of one mode: amplitudes by order, and a mode with its second harmonic.
 
-use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Axis, Case, named};
+use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
 use crate::figure::{Panel, Style};

@@ -1,8 +1,8 @@
 //! Statements of the source, decided by numbers: holds, fails (where, by how much), or undecided.
 
-use super::super::Workshop;
 use super::super::outcome::{Claim, Number, Outcome, Verdict};
 use super::super::study::{Case, Quantity, Statement, Trend, named};
+use super::super::workshop::Workshop;
 use super::each;
 use super::planes::crest;
 use super::points::critical_point;

@@ -1,8 +1,8 @@
 //! How a0 and a2 come nearer with the number of collocation points.
 
-use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Axis, Case, named};
+use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
 use super::rows::rows;

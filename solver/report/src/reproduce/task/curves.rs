@@ -1,8 +1,8 @@
 //! Landau coefficients along an axis, the 2:1 resonance, power laws at a bifurcation.
 
-use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Asked, Axis, Case, Drawn, Of, Reference, Together, named};
+use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
 use super::points::{critical_point, question};

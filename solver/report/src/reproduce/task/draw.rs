@@ -1,7 +1,7 @@
 //! What the tasks draw: pictures with their tables.
 
-use super::super::Workshop;
 use super::super::outcome::{Outcome, Picture, Table};
+use super::super::workshop::Workshop;
 use crate::figure::{Panel, panels};
 
 /// Adds the panels with their table, where there is anything to draw.

@@ -1,8 +1,8 @@
 //! Constitutive laws, or any expression, over the value of one field.
 
-use super::super::Workshop;
 use super::super::outcome::{Outcome, Table};
 use super::super::study::{Axis, Case};
+use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
 use crate::figure::{Panel, Style};

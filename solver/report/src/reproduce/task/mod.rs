@@ -11,16 +11,16 @@ mod points;
 mod profiles;
 mod rows;
 
-use super::Workshop;
 use super::outcome::Outcome;
 use super::study::{Case, Task};
+use super::workshop::Workshop;
 use landau_solver::error::{Error, Result};
 use rayon::prelude::*;
 
 /// Computes one task of a figure; files that it writes itself begin with `stem`.
 pub(super) fn run(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outcome> {
     let mut outcome = answer(shop, figure, stem, task)?;
-    outcome.demand_partners(figure, cases(task));
+    outcome.demand_partners(figure, task.cases());
     Ok(outcome)
 }
 
@@ -135,26 +135,6 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             side,
             shade,
         } => planes::circulation(shop, figure, case, over, *k, arrows, *side, shade),
-    }
-}
-
-/// The cases of a task.
-pub(super) fn cases(task: &Task) -> &[Case] {
-    match task {
-        Task::Profiles { case, .. }
-        | Task::Spectrum { case, .. }
-        | Task::Law { case, .. }
-        | Task::Convergence { case, .. }
-        | Task::Sweep { case, .. }
-        | Task::Resonance { case, .. }
-        | Task::Orders { case, .. }
-        | Task::SecondHarmonic { case, .. }
-        | Task::Critical { case, .. }
-        | Task::Claims { case, .. }
-        | Task::Values { case, .. }
-        | Task::PowerLaw { case, .. }
-        | Task::Pattern { case, .. }
-        | Task::Circulation { case, .. } => case,
     }
 }
 

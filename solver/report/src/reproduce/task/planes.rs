@@ -1,8 +1,8 @@
 //! Fields over the plane: patterns, circulation around a vortex.
 
-use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Picture, Table};
 use super::super::study::{Axis, Case, named};
+use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
 use crate::data::plane::{attributes, dataset};

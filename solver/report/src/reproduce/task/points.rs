@@ -1,8 +1,8 @@
 //! Single numbers beside the printed ones: critical points, Landau points.
 
-use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Asked, Axis, Case, Of, named};
+use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::rows::rows;
 use super::{Named, each};

@@ -1,8 +1,8 @@
 //! Base states over the cross-stream coordinate, and spectra over the wavenumber.
 
-use super::super::Workshop;
 use super::super::outcome::{Number, Outcome, Table};
 use super::super::study::{Axis, Case, Mark, PanelOf, Tail, named};
+use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
 use crate::figure::{Panel, Style};
