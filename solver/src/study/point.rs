@@ -307,7 +307,18 @@ fn unconverged(setup: &Setup, name: &str, error: f64, size: f64) -> Error {
         ),
         false => "another resolution has no such mode".to_owned(),
     };
-    Error::unresolved(name, setup.effective_resolution(), how_far)
+    let mut found = Error::unresolved(name, setup.effective_resolution(), how_far);
+    if let Error::Unresolved {
+        advice,
+        resolution: Some(_),
+        ..
+    } = &mut found
+        && error > 0.5 * size
+    {
+        *advice += "; where that does not help, another mode (--near): one that changes with every M is singular at a \
+                    wall, or one of a continuous spectrum";
+    }
+    found
 }
 
 impl fmt::Display for PointReport {

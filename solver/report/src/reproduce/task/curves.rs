@@ -131,7 +131,7 @@ pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<
             Drawn::Point(Column::A2) => known("first Landau coefficient", "a2"),
             Drawn::Point(Column::Amplitude) => known("equilibrium amplitude", "A_e"),
             Drawn::Point(Column::Threshold) => known("threshold amplitude", "A_e"),
-            Drawn::Derived(text) => known("", text),
+            Drawn::Derived(text) => known(text, text),
         }
     };
     let panel = |together: &Together| {

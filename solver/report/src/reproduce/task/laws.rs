@@ -58,7 +58,7 @@ pub(super) fn law(
         }
         Ok(columns)
     })?;
-    let panel = |text: &String| Panel::new("", &over.name, text);
+    let panel = |text: &String| Panel::new(text, &over.name, text);
     let mut drawn: Vec<Panel> = expressions.iter().map(panel).collect();
     let header = ["case", &over.name].into_iter();
     let header: Vec<&str> = header
