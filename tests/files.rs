@@ -1,14 +1,9 @@
 //! What commands draw and store beside what they print.
 
+use crate::reproduce::run;
 use crate::support::{close, landau, written};
 use std::fs;
 use std::path::Path;
-
-fn run(arguments: &[&str]) -> String {
-    let answer = landau(arguments);
-    assert_eq!(answer.status, 0, "{}", answer.err);
-    answer.out
-}
 
 /// An array of an npz file.
 fn array(file: &str, name: &str) -> Vec<f64> {
@@ -17,7 +12,7 @@ fn array(file: &str, name: &str) -> Vec<f64> {
     found.into_vec().expect("numbers")
 }
 
-/// The next argument as a path in a folder.
+/// The path of a file in a folder.
 fn inside(folder: &Path, name: &str) -> String {
     folder.join(name).display().to_string()
 }
@@ -168,7 +163,7 @@ fn base_states_are_stored() {
     );
 }
 
-/// r − (1 − k²)² in the line, r − (1 − k² − n²)² in the strip: of L, and of L† which is the same.
+/// r − (1 − k²)², of L and of L†.
 #[test]
 fn spectra_are_stored() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -216,7 +211,7 @@ typical { k = 1; }
     run(&[&drawn[..], &outs].concat());
     assert_eq!(array(&files[0], "xi").len(), 9);
     assert_eq!(array(&files[0], "eta").len(), 9);
-    // The amplitude alone separates φ from its namesake, which is driven at third order only.
+    // The second `phi`: no part of the fundamental.
     let size = |name: &str| {
         array(&files[0], name)
             .iter()

@@ -250,7 +250,7 @@ fn onsets() {
     let values = |found: &serde_json::Value| {
         ["tau0", "xi0_squared", "g"].map(|name| number(found, &format!("/envelope/{name}")))
     };
-    // Free walls, exact: k² = π²/2, σ² + … = 0 and Malkus & Veronis (1958).
+    // Free walls, exact: (σ + q²)(σ/Pr + q²) q² = Ra k² with q² = k² + π², k² = π²/2; c2 = −9π⁴ Pr/(8 (1 + Pr)).
     for pr in [0.71, 7.0] {
         let found = critical(&format!(
             "rayleigh_benard --vary Ra --from 500 --to 900 --minimize k=1.5:3 --set walls=free --set Pr={pr} -M 30"
@@ -265,7 +265,7 @@ fn onsets() {
             close("free walls", *found, exact, 1e-8 * exact);
         }
     }
-    // Rigid walls: Cross & Hohenberg (1993), equation (8.3): 1/τ0 = 19.65 Pr/(Pr + 0.5117), ξ0² = 0.148.
+    // Rigid walls: Cross & Hohenberg (1993): 1/τ0 = 19.65 Pr/(Pr + 0.5117), ξ0² = 0.148.
     for pr in [0.7, 1.0, 10.0] {
         let found = critical(&format!(
             "rayleigh_benard --vary Ra --from 1500 --to 2000 --minimize k=2.5:4 --set Pr={pr} -M 30"

@@ -129,8 +129,7 @@ mean { gauge p; }
         close("c0", number(&found, "/c0/0"), -0.1 * k * k, 1e-10);
         vanishes(&found);
     }
-    // Chandrasekhar (1961), section 29: free walls overturn at Ra = ((k² + π²)³ + π² Ta)/k², and the whole pencil
-    // has that root whatever Pr.
+    // Between free walls steady rolls begin at Ra = ((k² + π²)³ + π² Ta)/k² (Chandrasekhar 1961), whatever Pr.
     let line = format!(
         "critical {} --vary Ra --from 1800 --to 9000 --k 3 --set Pr=7 -M 30",
         path.display()

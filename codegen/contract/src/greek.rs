@@ -1,6 +1,6 @@
 //! Greek letters by name, for what takes no others than Latin ones.
 
-const SMALL: [(char, &str); 29] = [
+const SMALL: [(char, &str); 28] = [
     ('α', "alpha"),
     ('β', "beta"),
     ('γ', "gamma"),
@@ -19,7 +19,6 @@ const SMALL: [(char, &str); 29] = [
     ('µ', "mu"),
     ('ν', "nu"),
     ('ξ', "xi"),
-    ('ο', "omicron"),
     ('π', "pi"),
     ('ρ', "rho"),
     ('σ', "sigma"),
@@ -32,6 +31,11 @@ const SMALL: [(char, &str); 29] = [
     ('ψ', "psi"),
     ('ω', "omega"),
 ];
+
+/// Whether a letter is called so.
+pub fn names_a_letter(name: &str) -> bool {
+    SMALL.iter().any(|(_, known)| *known == name)
+}
 
 /// The name of a small letter.
 pub fn small_greek(letter: char) -> Option<&'static str> {

@@ -20,7 +20,7 @@ mod structure;
 mod tape;
 
 pub use expression::Expression;
-pub use greek::{greek, small_greek};
+pub use greek::{greek, names_a_letter, small_greek};
 pub use ids::{BalanceId, BaseRowId, CaseId, FieldId, Id, LawId, ParameterId, SolvedId, Table};
 pub use jet::{End, Function, Jet, Operator, jet};
 pub use kernel::{

@@ -2,20 +2,8 @@
 
 use super::{Binding, Formula, Mark, signed_sum};
 use crate::graph::Rational;
-use landau_contract::{greek, small_greek};
+use landau_contract::{greek, names_a_letter, small_greek};
 use num_traits::Signed;
-
-/// Names that LaTeX has a letter for.
-const GREEK: [&str; 23] = [
-    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa",
-    "lambda", "mu", "nu", "xi", "pi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi",
-    "omega",
-];
-
-/// Whether LaTeX has a letter of this name.
-pub(crate) fn is_greek(name: &str) -> bool {
-    GREEK.contains(&name)
-}
 
 /// Words as LaTeX sets them inside a formula; what is no Latin letter is set between them.
 pub fn latex_words(text: &str) -> String {
@@ -127,7 +115,7 @@ fn product(factors: &[Formula]) -> String {
 /// Whether a name is set upright, as a word.
 fn is_word(name: &str) -> bool {
     let stem = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    stem.chars().count() > 1 && !is_greek(stem)
+    stem.chars().count() > 1 && !names_a_letter(stem)
 }
 
 /// A sum that goes on from line to line, its signs below one another.
@@ -180,7 +168,7 @@ fn superscript(power: u8) -> String {
 fn letter(name: &str) -> String {
     let (stem, digits) = name.split_at(name.trim_end_matches(|c: char| c.is_ascii_digit()).len());
     let mut characters = stem.chars();
-    let stem = if is_greek(stem) {
+    let stem = if names_a_letter(stem) {
         format!("\\{stem}")
     } else if let (Some(only), None) = (characters.next(), characters.next()) {
         greek_command(only).unwrap_or_else(|| stem.to_owned())
@@ -203,7 +191,7 @@ fn greek_command(letter: char) -> Option<String> {
     ];
     let name = match CURLY.iter().find(|(other, _)| *other == letter) {
         Some((_, name)) => *name,
-        None => greek(letter).filter(|name| is_greek(name))?,
+        None => greek(letter)?,
     };
     match small_greek(letter) {
         Some(_) => Some(format!("\\{name}")),

@@ -10,7 +10,6 @@ mod letters;
 mod plain;
 
 pub use group::{Coefficient, grouped, over_common_denominator};
-pub(crate) use latex::is_greek;
 pub use latex::{latex, latex_words};
 pub use letters::{Arrangement, Letters};
 pub use plain::plain;

@@ -137,16 +137,19 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
     picture::accepted(options.plot.as_deref())?;
     let bar = Bar::new("scanning");
     let found = match range_of_k {
-        Some(bounds) => vec![minimise(setup, question, bounds, &bar)?],
+        Some(bounds) => {
+            let extremum = minimise(setup, question, bounds, &bar)?;
+            CriticalReport::at_extremum(setup, &question, extremum)?
+        }
         None => {
             let scan = criticality::scan(setup, question, &bar)?;
             picture::drawn(options.plot.as_deref(), || {
                 figure::critical(&setup.model.structure().title, &options.vary, symbol, &scan)
             })?;
-            scan.critical(&question)?
+            CriticalReport::new(setup, &question, scan.critical(&question)?)?
         }
     };
-    let first = &found[0];
+    let (first, others) = (&found.found[0], &found.found[1..]);
     if let (Some(plot), Some((from, to))) = (&options.plot, range_of_k) {
         let at_extremum = setup.moved(axis, first.value)?;
         let over_k = Question {
@@ -163,8 +166,6 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
             figure::critical(&title, "k", symbol, &scan)
         })?;
     }
-    let found = CriticalReport::new(setup, &question, found, range_of_k.is_some())?;
-    let (first, others) = (&found.found[0], &found.found[1..]);
     if !others.is_empty() {
         let others: Vec<String> = others.iter().map(|c| format!("{:.8}", c.value)).collect();
         eprintln!(

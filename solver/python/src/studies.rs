@@ -246,10 +246,15 @@ impl Core {
                 near: near.map(|(re, im)| C64::new(re, im)),
             };
             let found = match minimize {
-                Some(range) => vec![minimise(&setup, question, range, watch)?],
-                None => critical::critical(&setup, question, watch)?,
+                Some(range) => {
+                    let extremum = minimise(&setup, question, range, watch)?;
+                    CriticalReport::at_extremum(&setup, &question, extremum)?
+                }
+                None => {
+                    let found = critical::critical(&setup, question, watch)?;
+                    CriticalReport::new(&setup, &question, found)?
+                }
             };
-            let found = CriticalReport::new(&setup, &question, found, minimize.is_some())?;
             let points = found.found.iter().map(|point| found.json(point));
             Ok(points.collect::<Value>().to_string())
         })

@@ -24,8 +24,8 @@ use crate::base::BaseState;
 use crate::error::{Error, Result};
 use crate::model::layout::read_measure;
 use crate::model::{
-    BalanceId, C64, FieldId, Id, Jet, KernelId, Measure, Model, Structure, Table, TermInfo,
-    evaluate,
+    BalanceId, C64, ClosureKind, FieldId, Id, Jet, KernelId, Measure, Model, Structure, Table,
+    TermInfo, evaluate,
 };
 use crate::numerics::dense::Scalar;
 use crate::space::{Layout, Place, Points, Space};
@@ -222,6 +222,13 @@ impl Problem {
         let kept: Vec<usize> = self.borders.iter().map(|b| b.closure).collect();
         let borders = closure::adjoint(&self.base, &adjoint.space, &adjoint.layout, &kept)?;
         Ok(with_borders(adjoint.pencil(0.0), &borders))
+    }
+
+    /// Whether a mean is conserved: an envelope then has a second equation.
+    pub fn conserves_a_mean(&self) -> bool {
+        let conserved =
+            |b: &Border| matches!(b.kind, ClosureKind::Conserved | ClosureKind::Claimed);
+        self.borders.iter().any(conserved)
     }
 
     /// The rate at which the balance of slowest terms changes its field: Σ |coefficient| |k|^a (2/h)^d over the

@@ -10,9 +10,14 @@ use crate::numerics::Applied;
 use crate::numerics::dense::Scalar;
 use crate::space::Block;
 
-/// Rounding errors of a solved field, relative to what it is solved from: ε M³ by observation (second derivatives near
-/// the walls), with a factor of some ten.
-const ROUNDING: f64 = f64::EPSILON;
+/// The least noise, in units of the machine's precision; without a cross-stream coordinate it is that.
+const LEAST: f64 = 125.0;
+
+/// The part of a row below which a solved field is its rounding: some ten times what second derivatives near the walls
+/// leave by observation.
+fn noise(resolution: Option<usize>) -> f64 {
+    f64::EPSILON * resolution.map_or(LEAST, |m| LEAST.max((m as f64).powi(3)))
+}
 
 /// Terms of the rows, balances and then walls, from which fields are told to be there.
 pub struct Known {
@@ -49,14 +54,13 @@ impl Problem {
         let most = parts.max_by(|a, b| a.1.total_cmp(&b.1));
         Known {
             fields: most.map(|(field, _)| field).into_iter().collect(),
-            rows: vec![0.0; self.direct.layout.rows.len() + self.direct.walls.len()],
+            ..Known::nothing(self)
         }
     }
 
     /// The known fields with all that count beside them, row by row.
     fn present(&self, known: Known, shares: &[Table<FieldId, f64>]) -> Vec<FieldId> {
-        let resolution = self.resolution.unwrap_or(5).max(5) as f64;
-        let noise = ROUNDING * resolution.powi(3);
+        let noise = noise(self.resolution);
         let Known { mut fields, rows } = known;
         loop {
             // Beside what is known, in the row in which it counts most.
@@ -84,13 +88,17 @@ impl Problem {
 }
 
 impl Known {
-    /// A forcing.
-    pub fn forcing(problem: &Problem, right: &[C64]) -> Self {
+    fn nothing(problem: &Problem) -> Self {
         let rows = problem.direct.layout.rows.len() + problem.direct.walls.len();
-        let mut known = Known {
+        Known {
             fields: Vec::new(),
             rows: vec![0.0; rows],
-        };
+        }
+    }
+
+    /// A forcing.
+    pub fn forcing(problem: &Problem, right: &[C64]) -> Self {
+        let mut known = Known::nothing(problem);
         known.add(problem, right, 1.0);
         known
     }

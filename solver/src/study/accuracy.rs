@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum;
-use crate::weakly::{self, LandauPoint};
+use crate::weakly::{self, CANCELLED_SUM, LandauPoint};
 use std::sync::Arc;
 
 /// A relative change of k, small enough for its effect to be linear, and large against rounding.
@@ -31,8 +31,6 @@ pub const UNCONVERGED: f64 = 0.05;
 const CANCELLED: f64 = 1e-6;
 /// An error that is a larger part of c2 may be that of a c2 of rounding alone.
 const SUSPECT: f64 = 1e-4;
-/// Of what c2 would be the sum of, did nothing cancel: the rounding.
-const ROUNDING: f64 = 1e-13;
 
 /// Absolute errors of c0 and c2.
 #[derive(Clone, Copy, Debug)]
@@ -139,6 +137,12 @@ pub fn stands(error: f64, size: f64, sum: f64) -> bool {
     error <= (UNCONVERGED * size).max(CANCELLED * sum)
 }
 
+/// Whether a coefficient is zero within an error that is small against `sum`, what its terms would sum to did nothing
+/// cancel.
+pub fn vanishes(error: f64, size: f64, sum: f64) -> bool {
+    size <= error && error <= CANCELLED * sum
+}
+
 /// The error of c2, rounding where products cancel included; nothing where it leaves no c2 standing.
 pub fn landau_error(point: &LandauPoint, error: f64) -> Option<f64> {
     let size = point.c2.norm();
@@ -146,8 +150,9 @@ pub fn landau_error(point: &LandauPoint, error: f64) -> Option<f64> {
         return Some(error);
     }
     let sum = point.uncancelled();
-    let error = error.max(ROUNDING * sum);
-    stands(error, size, sum).then_some(error)
+    let error = error.max(CANCELLED_SUM * sum);
+    let known = stands(error, size, point.size()) || vanishes(error, size, sum);
+    known.then_some(error)
 }
 
 /// What a distance from singularity is small or large against: the slow eigenvalues, or the terms of the slowest
@@ -157,4 +162,19 @@ pub fn slow_rate(point: &LandauPoint) -> f64 {
     let rate = point.problem.rate(pair.k);
     let floor = if rate.is_finite() { rate } else { 0.0 };
     pair.scale.max(pair.c.norm()).max(floor)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{stands, vanishes};
+
+    /// A coefficient that cancels to a millionth of its terms, and is known no better than to its own size, is no zero.
+    #[test]
+    fn a_cancelled_coefficient_is_no_zero() {
+        assert!(vanishes(3e-16, 1e-17, 1.0));
+        assert!(!vanishes(0.9, 1.0, 1e6));
+        assert!(!stands(0.9, 1.0, 1.0));
+        assert!(!vanishes(1e-3, 1e-4, 1.0));
+        assert!(!vanishes(f64::NAN, 0.0, 1.0) && !stands(f64::INFINITY, 1.0, 1.0));
+    }
 }

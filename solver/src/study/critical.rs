@@ -185,16 +185,13 @@ impl Sampler<'_> {
             Ok(last.value)
         };
         let (x, value) = brent(evaluate, (a.x, a.value), (b.x, b.value), span)?;
+        let slope = (b.value - a.value) / (b.x - a.x);
         // One of the two may be the root itself, to rounding.
-        let rounding = match self.question.quantity {
-            Quantity::Growth => ROUNDING * a.carried.pair.scale.max(a.c0.norm()),
-            _ => ROUNDING * a.value.abs().max(b.value.abs()),
-        };
+        let rounding = self.rounding(a, slope);
         if value.abs() > (0.1 * a.value.abs().min(b.value.abs())).max(rounding) {
             return Ok(None);
         }
         let root = self.sample(x, Some(&near(x, a)))?;
-        let slope = (b.value - a.value) / (b.x - a.x);
         let error = self.error(&root, slope)?.max(span);
         Ok(Some(Critical {
             value: x,
@@ -202,6 +199,15 @@ impl Sampler<'_> {
             k: self.k(x),
             c0: root.c0,
         }))
+    }
+
+    /// What counts as zero of the quantity, which rises by `slope`.
+    fn rounding(&self, near: &Sample, slope: f64) -> f64 {
+        let size = match self.question.quantity {
+            Quantity::Growth => near.carried.pair.scale.max(near.c0.norm()),
+            Quantity::C2 | Quantity::Resonance => slope * (self.question.to - self.question.from),
+        };
+        ROUNDING * size.abs()
     }
 
     /// How far another M, and the base state at another degree, move a root: their values there over the slope.
@@ -224,9 +230,9 @@ impl Sampler<'_> {
                 .map_or(f64::INFINITY, |(value, _)| value);
             error = error.max(((value - root.value) / slope).abs());
         }
-        // A root at zero has no size of its own: one that is small against the interval will do.
-        let interval = UNRESOLVED * (self.question.to - self.question.from).abs();
-        if error > UNRESOLVED * root.x.abs().max(interval) {
+        // A root at zero has no size of its own: there it is rounding alone that may move it.
+        let rounding = (self.rounding(root, slope) / slope).abs();
+        if error > (UNRESOLVED * root.x.abs()).max(rounding) {
             let what = format!("the critical point near {}", root.x);
             let how_far = format!("another M moves it by {error:.1e}");
             return Err(Error::unresolved(what, m, how_far));

@@ -8,8 +8,7 @@
 use super::critical::{Critical, Quantity, Question};
 use super::{Axis, Setup, sensitivity};
 use crate::error::{Error, Result};
-use crate::model::{C64, ClosureKind};
-use crate::problem::Border;
+use crate::model::C64;
 use crate::weakly::{self, Envelope, Selection};
 use crate::words;
 use serde_json::{Value, json};
@@ -42,7 +41,7 @@ impl Onset {
     /// At a critical point of the growth rate that is the largest over k.
     ///
     /// # Errors
-    /// A parameter that is zero there or does not change the growth rate; a mode that is not found.
+    /// A parameter that does not change the growth rate, or follows from the base state; a mode that is not found.
     pub fn at(setup: &Setup, axis: Axis, critical: &Critical) -> Result<Self> {
         let Axis::Parameter(parameter) = axis else {
             return Err(Error::input("no parameter is named"));
@@ -63,10 +62,6 @@ impl Onset {
         }
         let (unit, distance) = distance(name, critical, slope.re > 0.0);
         let tau0 = 1.0 / (slope.re.abs() * unit);
-        let mut closures = problem.borders.iter();
-        let conserved =
-            |b: &Border| matches!(b.kind, ClosureKind::Conserved | ClosureKind::Claimed);
-        let conserved_mean = closures.any(conserved);
         let c2 = weakly::from_pair(&problem, pair).map(|point| point.c2);
         let ratio = |c: C64| if c.im == 0.0 { 0.0 } else { c.im / c.re };
         Ok(Onset {
@@ -77,7 +72,7 @@ impl Onset {
             frequency_shift: ratio(slope),
             dispersion: ratio(envelope.curvature),
             nonlinear_dispersion: c2.as_ref().ok().map(|c2| ratio(*c2)),
-            conserved_mean,
+            conserved_mean: problem.conserves_a_mean(),
             g: c2.map(|c2| -tau0 * c2.re).map_err(|e| e.to_string()),
         })
     }
@@ -128,19 +123,14 @@ pub struct CriticalReport {
 }
 
 impl CriticalReport {
-    /// What was found, the first critical point first; `extremum` says that the wavenumber was varied to find it.
+    /// What was found, the first critical point first.
     ///
     /// # Errors
     /// Nothing found.
-    pub fn new(
-        setup: &Setup,
-        question: &Question,
-        found: Vec<Critical>,
-        extremum: bool,
-    ) -> Result<Self> {
-        let first = found.first();
-        let first = first.ok_or_else(|| Error::computation("there is no critical point"))?;
-        let onset = || Onset::at(setup, question.axis, first).map_err(|e| e.to_string());
+    pub fn new(setup: &Setup, question: &Question, found: Vec<Critical>) -> Result<Self> {
+        if found.is_empty() {
+            return Err(Error::computation("there is no critical point"));
+        }
         let structure = setup.model.structure();
         Ok(CriticalReport {
             parameter: match question.axis {
@@ -148,10 +138,19 @@ impl CriticalReport {
                 Axis::Parameter(id) => structure.parameters[id].name.clone(),
             },
             of: question.quantity,
-            envelope: extremum.then(onset),
+            envelope: None,
             normalization: structure.amplitude.description.clone(),
             periodic: structure.periodic.clone(),
             found,
+        })
+    }
+
+    /// The critical point at which the growth rate is the largest over k, with the envelope equation there.
+    pub fn at_extremum(setup: &Setup, question: &Question, found: Critical) -> Result<Self> {
+        let onset = Onset::at(setup, question.axis, &found).map_err(|e| e.to_string());
+        Ok(CriticalReport {
+            envelope: Some(onset),
+            ..CriticalReport::new(setup, question, vec![found])?
         })
     }
 

@@ -1,13 +1,13 @@
 //! A Landau point with everything that it rests on: what `point` prints.
 
 use super::accuracy::{
-    Accuracy, Resonance, SINGULAR, accuracy, landau_error, resonance, slow_rate, stands,
+    Accuracy, Resonance, SINGULAR, accuracy, landau_error, resonance, slow_rate, stands, vanishes,
 };
 use super::amplitudes::{NAMED, errors, small_divisors};
 use super::orders::check_order;
 use super::{Setup, check_wavenumber, sensitivity};
 use crate::error::{Error, Result};
-use crate::model::{C64, ClosureKind};
+use crate::model::C64;
 use crate::series::Monomial;
 use crate::spectrum::mirror_image;
 use crate::weakly::{
@@ -102,11 +102,9 @@ impl PointReport {
             small_divisors.push(format!("left and right waves: {error}"));
             None
         });
-        let mut closures = point.problem.borders.iter();
         Ok(PointReport {
             envelope: Envelope::of(&point.problem, &point.pair)?,
-            conserved_mean: closures
-                .any(|b| matches!(b.kind, ClosureKind::Conserved | ClosureKind::Claimed)),
+            conserved_mean: point.problem.conserves_a_mean(),
             waves,
             equation,
             small_divisors,
@@ -239,11 +237,11 @@ fn longer(
         let name = format!("c{}", degree - 1);
         let size = term.g.norm();
         // Where it cancels, of the size that c2 and the slow rates give it.
-        let cancelling = || {
-            let sum = point.uncancelled();
-            sum * (sum / point.pair.scale).powi(degree as i32 / 2 - 1)
-        };
-        if !(stands(*error, size, 0.0) || stands(*error, size, cancelling())) {
+        let order = degree as i32 / 2 - 1;
+        let sum = |c2: f64| c2 * (c2 / point.pair.scale).powi(order);
+        let known = stands(*error, size, sum(point.size()))
+            || vanishes(*error, size, sum(point.uncancelled()));
+        if !known {
             return Err(unconverged(setup, &name, *error, size));
         }
         equation.coefficients.push(term.g);

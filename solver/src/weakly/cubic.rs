@@ -20,7 +20,7 @@ use crate::spectrum::{self, EigenPair};
 use std::sync::Arc;
 
 /// Below this part of what its terms would sum to were they not to cancel, c2 is rounding.
-const CANCELLED: f64 = 1e-13;
+pub const CANCELLED_SUM: f64 = 1e-13;
 
 /// The factor of a jet.
 type Weight = fn(Jet) -> f64;
@@ -219,7 +219,7 @@ impl LandauPoint {
     /// A_e² = −a0/a2 where that is positive, P (4.1).
     pub fn amplitude(&self) -> Option<f64> {
         let [c0, _] = self.rounding();
-        equilibrium((self.c0, c0), (self.c2, CANCELLED * self.uncancelled()))
+        equilibrium((self.c0, c0), (self.c2, CANCELLED_SUM * self.uncancelled()))
     }
 
     /// What rounding leaves undecided of c0 and c2 at least, where products do not cancel.

@@ -17,7 +17,7 @@ mod waves;
 
 pub use amplitude::AmplitudeEquation;
 pub use bifurcation::{Bifurcation, Side, equilibrium};
-pub use cubic::{LandauPoint, Selection, from_pair, point, select, warm_point};
+pub use cubic::{CANCELLED_SUM, LandauPoint, Selection, from_pair, point, select, warm_point};
 pub use envelope::Envelope;
 pub use equilibria::{Equilibrium, equilibria};
 pub use expansion::{CriticalMode, Distance, Expansion};

@@ -3,7 +3,7 @@
 use super::operator::Value;
 use super::token::{Kind, Token};
 use super::{Letters, Read, Reader, Vocabulary};
-use crate::formula::is_greek;
+use landau_contract::names_a_letter;
 use std::ops::Range;
 
 impl Reader<'_> {
@@ -176,7 +176,9 @@ impl Reader<'_> {
                     let inside = self.argument()?;
                     Ok(inside.iter().map(spelling).collect())
                 }
-                name if self.known(name) || is_greek(&name.to_lowercase()) => Ok(name.to_owned()),
+                name if self.known(name) || names_a_letter(&name.to_lowercase()) => {
+                    Ok(name.to_owned())
+                }
                 name => Err(self.unreadable(&format!("`\\{name}` is not known"), range)),
             };
         }

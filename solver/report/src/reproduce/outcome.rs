@@ -37,9 +37,9 @@ pub struct Number {
 impl Number {
     /// Whether both are one number: a point marked in one picture and asked for beside another.
     fn is(&self, other: &Number) -> bool {
-        let place = |number: &Number| (number.figure.clone(), number.quantity.clone());
         let free = self.decides.is_none() && other.decides.is_none();
-        free && place(self) == place(other)
+        let same = self.figure == other.figure && self.quantity == other.quantity;
+        free && same
             && self.ours == other.ours
             && (self.printed.is_none() || other.printed.is_none())
     }

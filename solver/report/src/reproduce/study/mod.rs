@@ -6,6 +6,7 @@ mod place;
 mod printed;
 
 pub use axis::{Axis, Spacing};
+pub use parts::at_each;
 pub use printed::Printed;
 
 use landau_solver::error::{Error, Result};

@@ -1,6 +1,17 @@
 //! What tasks of every kind have.
 
-use super::{Axis, Case, Task};
+use super::{Axis, Case, Task, named};
+
+/// Every case at every M.
+pub fn at_each(cases: &[Case], resolutions: &[usize]) -> Vec<Case> {
+    let at = |case: &Case, resolution: usize| Case {
+        label: named(case, &format!("M = {resolution}")),
+        resolution: Some(resolution),
+        ..case.clone()
+    };
+    let each = |case| resolutions.iter().map(move |&m| at(case, m));
+    cases.iter().flat_map(each).collect()
+}
 
 impl Task {
     /// What varies, where something does.

@@ -1,7 +1,7 @@
 //! How a0 and a2 come nearer with the number of collocation points.
 
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Axis, Case, named};
+use super::super::study::{Axis, Case, at_each, named};
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
@@ -19,15 +19,7 @@ pub(super) fn convergence(
     resolutions: &[usize],
 ) -> Result<Outcome> {
     let mut outcome = Outcome::default();
-    let at = |case: &Case, resolution: usize| Case {
-        label: named(case, &format!("M = {resolution}")),
-        resolution: Some(resolution),
-        ..case.clone()
-    };
-    let all = cases
-        .iter()
-        .flat_map(|case| resolutions.iter().map(move |&m| at(case, m)));
-    let all: Vec<Case> = all.collect();
+    let all = at_each(cases, resolutions);
     let found = each(&all, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
         rows(&setup, case.k, &over.name, over.values(), &[])

@@ -1,7 +1,7 @@
 //! Base states over the cross-stream coordinate, and spectra over the wavenumber.
 
 use super::super::outcome::{Number, Outcome, Table};
-use super::super::study::{Axis, Case, Mark, PanelOf, Tail, named};
+use super::super::study::{Axis, Case, Mark, PanelOf, Tail, at_each, named};
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
@@ -132,16 +132,7 @@ pub(super) fn spectrum(
     resolutions: &[usize],
 ) -> Result<Outcome> {
     let mut outcome = Outcome::default();
-    let all: Vec<Case> = cases
-        .iter()
-        .flat_map(|case| {
-            resolutions.iter().map(|&resolution| Case {
-                label: named(case, &format!("M = {resolution}")),
-                resolution: Some(resolution),
-                ..case.clone()
-            })
-        })
-        .collect();
+    let all = at_each(cases, resolutions);
     let found = each(&all, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
         let problem = &setup.problem(&setup.base(None)?)?;
