@@ -297,7 +297,7 @@ base { p = 0; q = 0; }
 amplitude { p = 1; }
 ";
     let path = written("wave.model", spec);
-    for (way, words) in [("up", "r/2.000000 − 1"), ("down", "1 − r/2.000000")] {
+    for (way, words) in [("up", "r/2 − 1"), ("down", "1 − r/2")] {
         let found = critical(&format!(
             "{} --vary r --from 1.5 --to 2.6 --minimize k=0.7:1.2 --set way={way}",
             path.display()

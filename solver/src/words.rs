@@ -17,8 +17,11 @@ pub fn complex(value: C64) -> Value {
     Value::Array(vec![number(value.re), number(value.im)])
 }
 
-/// A number in a title: six decimals at most.
+/// A number in a title: six decimals at most, or all digits of one that they would leave nothing of.
 pub fn short(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-4 {
+        return format!("{value:e}");
+    }
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
@@ -72,4 +75,17 @@ pub fn amplitude_equation(c0: C64, c2: C64) -> String {
         text += &format!(",  dθ/dt = {:.6e} {} A²", c0.im, term(c2.im));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{short, with_error};
+
+    #[test]
+    fn numbers_of_any_size() {
+        let found = [0.16, 1708.0, -2.5e-9, 0.0, 1e-4].map(short);
+        assert_eq!(found, ["0.16", "1708", "-2.5e-9", "0", "0.0001"]);
+        assert_eq!(with_error(1e-17, 5e-16), "0 ± 5e-16");
+        assert_eq!(with_error(1707.76178, 2e-5), "1707.76178 ± 2e-5");
+    }
 }

@@ -20,6 +20,7 @@ use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::verify::Certificate;
 use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality};
+use landau_solver::words;
 use serde_json::json;
 
 pub fn base(setup: &Setup, points: usize, files: &Files, common: &Common) -> Result<()> {
@@ -162,7 +163,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         };
         let scan = criticality::scan(&at_extremum, over_k, &bar)?;
         picture::drawn(Some(plot), || {
-            let title = format!("{} = {:.6}", options.vary, first.value);
+            let title = format!("{} = {}", options.vary, words::short(first.value));
             figure::critical(&title, "k", symbol, &scan)
         })?;
     }

@@ -96,13 +96,13 @@ impl Onset {
 fn distance(name: &str, critical: &Critical, rises: bool) -> (f64, String) {
     let value = critical.value;
     // A parameter that is measured from onset itself.
-    if value.abs() <= 10.0 * critical.error || value.abs() < 1e-12 {
+    if value.abs() <= 10.0 * critical.error {
         let sign = if rises { "" } else { "−" };
         return (1.0, format!("{sign}{name}"));
     }
     let text = match rises == (value > 0.0) {
-        true => format!("{name}/{value:.6} − 1"),
-        false => format!("1 − {name}/{value:.6}"),
+        true => format!("{name}/{} − 1", words::short(value)),
+        false => format!("1 − {name}/{}", words::short(value)),
     };
     (value.abs(), text)
 }

@@ -8,10 +8,10 @@ use std::sync::{Arc, LazyLock};
 
 /// Pixels a pixel of the drawing.
 const SCALE: f32 = 1.5;
-/// Its family.
+/// The family of the font that drawings name.
 const FONT: &str = "DejaVu Sans";
 
-/// The font that the drawings name, so that no machine has to have it.
+/// The font itself, so that no machine has to have it.
 static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
     let mut fonts = Database::new();
     fonts.load_font_data(dejavu::sans::regular().to_vec());
