@@ -252,3 +252,51 @@ fn rows_carry_errors_distances_and_status() {
     }
     assert!(resonant > 0);
 }
+
+/// A mode that grows inside the range alone, beside one that decays slowly everywhere: the fastest growing one is
+/// found, with few points and with many. a: r − (1 − k²)²; b: −s.
+#[test]
+fn growth_between_stable_ends() {
+    let spec = "model window \"Growth inside a window, beside a mode that decays slowly\";
+coordinates { x: periodic; }
+parameters { r = 0.1; s = 0.01; }
+fields { a; b; }
+balance {
+    window: dt(a) = r*a - (a + 2*dx(dx(a)) + dx(dx(dx(dx(a))))) - a^3;
+    slow:   dt(b) = -s*b - b^3;
+}
+base { a = 0; b = 0; }
+typical { k = 1; }
+";
+    let path = crate::support::written("window.model", spec);
+    let folder = tempfile::tempdir().expect("a folder");
+    for (axis, growth) in [
+        ("k=0.5:1.5:9", 0.1),
+        ("k=0.5:1.5:101", 0.1),
+        ("r=-0.2:0.1:4", 0.1),
+    ] {
+        let out = folder.path().join("window.csv").display().to_string();
+        let line = [
+            "sweep",
+            &path.display().to_string(),
+            "--over",
+            axis,
+            "--out",
+            &out,
+        ];
+        let k = if axis.starts_with('k') {
+            &[][..]
+        } else {
+            &["--k", "1"][..]
+        };
+        let answer = crate::support::landau(&[&line[..], k, &["--force"]].concat());
+        assert_eq!(answer.status, 0, "{axis}: {}", answer.err);
+        let table = std::fs::read_to_string(&out).expect("the table");
+        let rates = table
+            .lines()
+            .skip(1)
+            .filter_map(|row| row.split(',').nth(1));
+        let rates = rates.map(|rate| rate.parse::<f64>().expect("a rate"));
+        crate::support::close(axis, rates.fold(f64::MIN, f64::max), growth, 1e-12);
+    }
+}

@@ -119,7 +119,7 @@ pub enum Command {
     },
     /// Landau points over ranges of k and parameters, as CSV; resumes where it was interrupted.
     #[command(
-        after_help = "Examples:\n  landau sweep my.model --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep my.model --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv --shard 3/16\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv --emit slurm --tasks 64"
+        after_help = "Examples:\n  landau sweep my.model --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep my.model --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv.shard-3 --shard 3/16\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv --emit slurm --tasks 64"
     )]
     Sweep {
         /// A built model, or the path of a .model file.
@@ -255,7 +255,7 @@ pub struct SweepOptions {
     /// the base state, as `S*T at upper`, `T at lower`, `integral(n)`.
     #[arg(long, value_name = "COLUMN")]
     pub column: Vec<String>,
-    /// Compute one share of the sweep, to be merged; `slurm` takes that of the task of a job array.
+    /// Compute one share of the sweep into a file of its own, to be merged; `slurm` takes that of the task of a job array.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["plot", "emit"])]
     pub shard: Option<String>,
     /// Write a script or job file that runs the sweep in shares, instead of running it.

@@ -1,7 +1,7 @@
 //! Sweeps: Landau points over one or several axes, in parallel, resumable.
 //!
 //! The first axis is cut into chunks of fixed length. A chunk finds its mode from full spectra at its
-//! two ends (the more unstable one leads) and follows it by shape, so a row does not depend on how
+//! ends and between them (the most unstable one leads) and follows it by shape, so a row does not depend on how
 //! many threads there are, or on where an earlier run was interrupted.
 
 use super::accuracy::{landau_error, stands};
@@ -24,6 +24,8 @@ use std::sync::{Arc, OnceLock};
 
 /// Points of the first axis that one worker follows.
 const CHUNK: usize = 40;
+/// Points of a chunk at which all modes are looked at, its ends among them: between two stable ends a mode may grow.
+const SEEDS: usize = 4;
 /// A second-order problem nearer to singularity than this, relative to the slow rates, makes a row no `ok`.
 const RESONANT: f64 = 1e-3;
 /// Evenly spaced values along one axis.
@@ -221,29 +223,27 @@ impl Sweep<'_> {
     ) -> Vec<Row> {
         let places = self.places(chunk);
         if self.ranges[0].axis != Axis::Wavenumber {
+            let look = |place: &[f64]| {
+                let (setup, k) = self.at(place)?;
+                let base = setup.base(None)?;
+                let pair = weakly::select(&*setup.problem(&base)?, k, self.selection(None))?;
+                Ok((pair.c.re, Carried { base, pair }))
+            };
             let step = |place: &[f64], near: Option<&Carried>| self.evaluate(place, near);
-            return follow(
-                &places,
-                |carried: &Carried| carried.pair.c.re,
-                step,
-                self.derived.len(),
-                progress,
-            );
+            return follow(&places, look, step, self.derived.len(), progress);
         }
         // One base state and one set of coefficients serve the whole line.
         let line = self.at(&places[0]).and_then(|(setup, _)| {
             let base = base.get_or_init(|| setup.base(None));
             let base = base.as_ref().map_err(Clone::clone)?;
             let pairs = Collocations::new(&setup, base)?;
+            let look = |place: &[f64]| {
+                let pair = weakly::select(&pairs.own, place[0], self.selection(None))?;
+                Ok((pair.c.re, pair))
+            };
             let step =
                 |place: &[f64], near: Option<&EigenPair>| self.row(&pairs, place, place[0], near);
-            Ok(follow(
-                &places,
-                |pair: &EigenPair| pair.c.re,
-                step,
-                self.derived.len(),
-                progress,
-            ))
+            Ok(follow(&places, look, step, self.derived.len(), progress))
         });
         line.unwrap_or_else(|error| {
             progress.advance(places.len());
@@ -252,6 +252,15 @@ impl Sweep<'_> {
                 .map(|place| Row::failed(place, &error, self.derived.len()))
                 .collect()
         })
+    }
+
+    /// The mode that continues `near`, or the one that is asked for.
+    fn selection<'p>(&self, near: Option<&'p EigenPair>) -> Selection<'p> {
+        match (near, self.near) {
+            (Some(pair), _) => Selection::Like(pair),
+            (None, Some(target)) => Selection::Near(target),
+            (None, None) => Selection::Leading,
+        }
     }
 
     /// The setup and the wavenumber of a place.
@@ -287,12 +296,7 @@ impl Sweep<'_> {
         k: f64,
         near: Option<&EigenPair>,
     ) -> Result<(Row, EigenPair)> {
-        let selection = match (near, self.near) {
-            (Some(pair), _) => Selection::Like(pair),
-            (None, Some(target)) => Selection::Near(target),
-            (None, None) => Selection::Leading,
-        };
-        let pair = weakly::select(&collocations.own, k, selection)?;
+        let pair = weakly::select(&collocations.own, k, self.selection(near))?;
         // Where c2 has no answer, the mode is still there to be followed.
         let row = match weakly::from_pair(&collocations.own, pair.clone()) {
             Ok(point) => {
@@ -438,39 +442,39 @@ fn row(collocations: &Collocations, place: &[f64], point: &LandauPoint) -> Resul
     })
 }
 
-/// Rows of a chunk: the mode of the more unstable end, followed to the other.
-fn follow<C>(
+/// Rows of a chunk: the mode that is most unstable at one of its seeds, which `look` finds, followed from there to both
+/// ends by `step`.
+fn follow<C: Clone>(
     places: &[Vec<f64>],
-    growth: impl Fn(&C) -> f64,
+    look: impl Fn(&[f64]) -> Result<(f64, C)>,
     step: impl Fn(&[f64], Option<&C>) -> Result<(Row, C)>,
     derived: usize,
     progress: &dyn Progress,
 ) -> Vec<Row> {
     let last = places.len() - 1;
-    let ends = [0, last].map(|i| step(&places[i], None));
-    let [first_growth, last_growth] =
-        [&ends[0], &ends[1]].map(|end| end.as_ref().map_or(f64::NEG_INFINITY, |(_, c)| growth(c)));
-    let [first, second] = ends;
-    let backwards = last_growth > first_growth;
-    let mut order: Vec<usize> = (0..places.len()).collect();
-    if backwards {
-        order.reverse();
-    }
-    let mut seed = Some(if backwards { second } else { first });
+    let mut seeds: Vec<usize> = (0..SEEDS).map(|i| i * last / (SEEDS - 1)).collect();
+    seeds.dedup();
+    let found = seeds
+        .into_iter()
+        .filter_map(|i| Some((i, look(&places[i]).ok()?)));
+    // Of equal ones the first.
+    let best = found.reduce(|best, next| if next.1.0 > best.1.0 { next } else { best });
+    let (start, seed) = best.map_or((0, None), |(start, (_, seed))| (start, Some(seed)));
     let mut rows: Vec<Option<Row>> = vec![None; places.len()];
-    let mut carried: Option<C> = None;
-    for index in order {
-        let outcome = seed
-            .take()
-            .unwrap_or_else(|| step(&places[index], carried.as_ref()));
-        rows[index] = Some(match outcome {
-            Ok((row, next)) => {
-                carried = Some(next);
-                row
-            }
-            Err(error) => Row::failed(places[index].clone(), &error, derived),
-        });
-        progress.advance(1);
+    let upwards: &mut dyn Iterator<Item = usize> = &mut (start..places.len());
+    let downwards: &mut dyn Iterator<Item = usize> = &mut (0..start).rev();
+    for way in [upwards, downwards] {
+        let mut near = seed.clone();
+        for index in way {
+            rows[index] = Some(match step(&places[index], near.as_ref()) {
+                Ok((row, next)) => {
+                    near = Some(next);
+                    row
+                }
+                Err(error) => Row::failed(places[index].clone(), &error, derived),
+            });
+            progress.advance(1);
+        }
     }
     rows.into_iter().flatten().collect()
 }
