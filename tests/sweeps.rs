@@ -208,6 +208,10 @@ fn somebody_elses_files_are_safe() {
     let dangling = run(&link, &[]);
     assert_eq!(dangling.status.code(), Some(2), "{}", said(&dangling));
     fs::copy(&out, &target).expect("copied");
+    // Without the description beside it, it is no table of this sweep.
+    assert_eq!(run(&link, &[]).status.code(), Some(2));
+    let description = |table: &Path| PathBuf::from(format!("{}-metadata.json", table.display()));
+    fs::copy(description(&out), description(&target)).expect("copied");
     assert!(run(&link, &[]).status.success());
     assert!(fs::symlink_metadata(&link).expect("there").is_symlink());
     let names: Vec<_> = fs::read_dir(&folder)

@@ -32,5 +32,5 @@ pub fn tape(sources: &Sources) -> Result<TapeModel, Diagnostics> {
     };
     let own = texts(&mut derivation.model.sources.iter());
     let laws = texts(&mut sources.laws.values());
-    Ok(TapeModel::new(kernels, own, laws))
+    Ok(TapeModel::new(kernels, own, laws, crate::BUILD))
 }

@@ -23,5 +23,8 @@ pub mod model;
 mod sources;
 mod syntax;
 
+/// Identity of this build: a hash of the generator's sources and the contract's, 16 hexadecimal digits.
+pub const BUILD: &str = env!("LANDAU_BUILD");
+
 pub use generate::{ORDER, generate, tape};
 pub use sources::Sources;

@@ -31,7 +31,6 @@ pub mod base;
 
 pub mod error;
 pub mod file;
-pub mod measured;
 pub mod numerics;
 pub mod parameters;
 pub mod pencil;
@@ -43,4 +42,9 @@ pub mod study;
 pub mod weakly;
 pub mod words;
 pub use landau_contract as model;
+
+/// Identity of this build: a hash of the solver's sources, the contract's and the versions of dependencies, 16
+/// hexadecimal digits.
+pub const BUILD: &str = env!("LANDAU_BUILD");
+
 pub use model::Model;

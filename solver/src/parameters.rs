@@ -108,8 +108,11 @@ impl Parameters {
         found.unwrap_or(CaseId::at(0))
     }
 
-    /// The value of a parameter as the user writes it.
+    /// The value of a parameter as the user writes it: a number, the name of a choice, or `auto`.
     pub fn shown(&self, structure: &Structure, parameter: ParameterId) -> String {
+        if self.automatic[parameter] {
+            return "auto".to_owned();
+        }
         let choices = &structure.parameters[parameter].choices;
         match choices.get(self.choice(parameter)) {
             Some(choice) => choice.clone(),
@@ -132,10 +135,7 @@ impl Parameters {
     /// Those that are not at their defaults: `S = 200`.
     pub fn changed(&self, structure: &Structure) -> Vec<String> {
         let own = structure.parameters.pairs().filter_map(|(id, info)| {
-            let value = match self.automatic[id] {
-                true => "auto".to_owned(),
-                false => self.shown(structure, id),
-            };
+            let value = self.shown(structure, id);
             let moved = self.automatic[id] || self.values[id] != info.default;
             moved.then(|| format!("{} = {value}", info.name))
         });

@@ -22,6 +22,12 @@ pub trait Model: Send + Sync {
     /// Path and text of every law file at hand where the model was made, used or not.
     fn laws(&self) -> Vec<(String, String)>;
 
+    /// Identity of the build of the generator that made the kernels: builds that may emit other operations differ in
+    /// it. Empty where no generator made them.
+    fn generator(&self) -> &str {
+        ""
+    }
+
     /// Runs a real kernel at one point. `out` must hold [`output_length`] values.
     fn evaluate(&self, kernel: KernelId, point: &[f64], out: &mut [f64]);
 

@@ -13,6 +13,7 @@ pub struct TapeModel {
     structure: Structure,
     sources: Vec<(String, String)>,
     laws: Vec<(String, String)>,
+    generator: &'static str,
     kernels: HashMap<KernelId, Kernel>,
     forms: Vec<Table<BalanceId, Option<Kernel>>>,
     residuals: HashMap<ResidualId, Kernel>,
@@ -20,11 +21,12 @@ pub struct TapeModel {
 
 impl TapeModel {
     /// A model of kernels; `sources` are path and text of the spec and its law files, `laws` of every law file
-    /// at hand.
+    /// at hand, `generator` is the build that made the kernels.
     pub fn new(
         kernels: ModelKernels,
         sources: Vec<(String, String)>,
         laws: Vec<(String, String)>,
+        generator: &'static str,
     ) -> Self {
         let ModelKernels {
             structure,
@@ -36,6 +38,7 @@ impl TapeModel {
             structure,
             sources,
             laws,
+            generator,
             kernels: kernels.into_iter().collect(),
             forms,
             residuals: residuals.into_iter().collect(),
@@ -54,6 +57,10 @@ impl Model for TapeModel {
 
     fn laws(&self) -> Vec<(String, String)> {
         self.laws.clone()
+    }
+
+    fn generator(&self) -> &str {
+        self.generator
     }
 
     fn evaluate(&self, kernel: KernelId, point: &[f64], out: &mut [f64]) {

@@ -48,6 +48,7 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
         let (path, text) = (&file.path, &file.text);
         quote!((#path, #text))
     });
+    let build = crate::BUILD;
     let code = quote! {
         use landau_contract as s;
         use s::C64;
@@ -82,6 +83,10 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
 
             fn laws(&self) -> Vec<(String, String)> {
                 super::LAWS.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect()
+            }
+
+            fn generator(&self) -> &str {
+                #build
             }
 
             fn evaluate(&self, kernel: s::KernelId, point: &[f64], out: &mut [f64]) {

@@ -221,6 +221,9 @@ pub struct CriticalOptions {
     /// A picture of the quantity over the range, and where it vanishes; with --minimize, of the growth rate over k.
     #[arg(long, value_name = "FILE.svg|png")]
     pub plot: Option<PathBuf>,
+    /// Replace a picture that Landau did not write.
+    #[arg(long)]
+    pub force: bool,
 }
 
 /// Where an answer goes besides the screen.
@@ -232,6 +235,9 @@ pub struct Files {
     /// The same as data (repeatable).
     #[arg(long, value_name = "FILE.npz|nc")]
     pub out: Vec<PathBuf>,
+    /// Replace files that Landau did not write, or that were changed since.
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Args)]
@@ -245,7 +251,7 @@ pub struct SweepOptions {
     /// Where the table goes.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Overwrite a file that is no table of this sweep.
+    /// Replace files that are no table of this sweep, no journal of it, no picture that Landau wrote.
     #[arg(long)]
     pub force: bool,
     /// A picture of growth rate, c2 and amplitude over the first axis.
@@ -259,13 +265,13 @@ pub struct SweepOptions {
     #[arg(long, value_name = "I/N", conflicts_with_all = ["plot", "emit"])]
     pub shard: Option<String>,
     /// Write a script or job file that runs the sweep in shares, instead of running it.
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, conflicts_with = "plot")]
     pub emit: Option<Engine>,
     /// Number of shares, with --emit.
-    #[arg(long, default_value_t = 16, value_name = "N")]
+    #[arg(long, default_value_t = 16, value_name = "N", requires = "emit")]
     pub tasks: usize,
     /// Cores of a share, with --emit.
-    #[arg(long, default_value_t = 4, value_name = "N")]
+    #[arg(long, default_value_t = 4, value_name = "N", requires = "emit")]
     pub cpus: usize,
 }
 
@@ -284,7 +290,7 @@ pub struct MergeOptions {
     /// Where the table goes.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// Overwrite a file that is another table.
+    /// Replace a file that is no table of this sweep.
     #[arg(long)]
     pub force: bool,
 }
@@ -315,6 +321,9 @@ pub struct PatternOptions {
     /// Where it goes (repeatable): .svg and .png are pictures, .npz, .nc and .vtk are data.
     #[arg(long, value_name = "FILE", required = true)]
     pub out: Vec<PathBuf>,
+    /// Replace files that Landau did not write, or that were changed since.
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -34,13 +34,13 @@ pub fn asked(setup: &Setup, k: Option<f64>, common: &Common) -> Result<(f64, Sel
 /// Says what an earlier run has left.
 pub fn resumed(found: Resumed) {
     if found.taken > 0 {
-        eprintln!(
+        note!(
             "resumed: {} rows are taken from an interrupted run",
             found.taken
         );
     }
     if found.damaged > 0 {
-        eprintln!(
+        note!(
             "note: {} lines of its journal do not fit and are computed again",
             found.damaged
         );

@@ -4,23 +4,20 @@
 
 #![warn(missing_docs)]
 
-/// Prints a line; a reader that has gone away is no error.
-macro_rules! say {
-    ($($argument:tt)*) => {{
-        use std::io::Write;
-        let _ = writeln!(std::io::stdout(), $($argument)*);
-    }};
-}
+#[macro_use]
+mod terminal;
 
 mod arguments;
 mod asked;
 mod cluster;
 mod inspect;
 mod interrupt;
+mod outputs;
 mod pattern;
 mod picture;
 mod progress;
 mod reproduce;
+mod script;
 mod solve;
 
 use arguments::{Arguments, Command, Common};
@@ -34,20 +31,27 @@ use std::sync::Arc;
 
 /// Runs the command line for the models of a crate.
 pub fn run(models: Vec<Arc<dyn Model>>) -> ExitCode {
-    interrupt::watch();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
             // --help and --version are answers.
             let status = if error.use_stderr() { 2 } else { 0 };
-            let _ = error.print();
-            return ExitCode::from(status);
+            let printed = error.print();
+            if status == 2 {
+                return ExitCode::from(status);
+            }
+            terminal::remember(printed);
+            return ended(terminal::finish());
         }
     };
-    match dispatch(&Library { models }, arguments.command) {
+    ended(dispatch(&Library { models }, arguments.command).and_then(|()| terminal::finish()))
+}
+
+fn ended(outcome: Result<()>) -> ExitCode {
+    match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            note!("error: {error}");
             ExitCode::from(error.status())
         }
     }

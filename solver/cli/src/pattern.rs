@@ -2,31 +2,26 @@
 
 use crate::arguments::{Common, PatternOptions};
 use crate::asked::asked;
-use landau_report::data::FORMATS;
+use crate::outputs;
 use landau_report::data::plane::{attributes, dataset};
 use landau_report::figure::{Drawing, Part, View, is_picture, pattern_lines, pattern_pair};
 use landau_report::library::expression;
 use landau_solver::error::{Error, Result};
+use landau_solver::file::Overwrite;
 use landau_solver::model::{Expression, FieldId};
 use landau_solver::study::{Setup, check_wavenumber};
 use landau_solver::weakly::{Pattern, PlaneField, Window, pattern as expand};
 use landau_solver::words;
 use serde_json::json;
+use std::path::PathBuf;
 
 pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Result<()> {
     let (k, selection) = asked(setup, options.k, common)?;
     check_wavenumber(k)?;
     let window = window(options)?;
-    for path in &options.out {
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-        if !is_picture(path) && !FORMATS.contains(&extension) {
-            return Err(Error::input(format!(
-                "--out {}: it accepts .svg, .png, .{}",
-                path.display(),
-                FORMATS.join(", .")
-            )));
-        }
-    }
+    outputs::check_data(&options.out, &outputs::plane_formats())?;
+    let paths = options.out.iter().map(PathBuf::as_path);
+    outputs::check(paths, Overwrite::forced(options.force))?;
     let state = setup.base(None)?;
     let point = setup.point(&state, k, selection)?;
     let amplitude = match (options.amplitude, point.amplitude()) {

@@ -2,11 +2,13 @@
 
 use crate::arguments::{Common, Files};
 use crate::asked::asked;
+use crate::outputs;
 use landau_report::data::plane::{attributes, modes as dataset};
 use landau_report::data::{Dataset, Facts};
 use landau_report::figure;
-use landau_report::figure::{Drawing, Panel, Style, atlas, is_picture, panels};
+use landau_report::figure::{Drawing, Panel, Style, atlas, panels};
 use landau_solver::error::{Error, Result};
+use landau_solver::file::Overwrite;
 use landau_solver::study::Setup;
 use landau_solver::study::modes::Modes;
 use landau_solver::study::row::{Column, Row, column};
@@ -17,10 +19,9 @@ use std::path::{Path, PathBuf};
 /// Writes a picture where one is asked for.
 ///
 /// # Errors
-/// A path that is no .svg or .png or cannot be written; an answer that has nothing to draw.
+/// A path that cannot be written; an answer that has nothing to draw.
 pub fn drawn(path: Option<&Path>, draw: impl FnOnce() -> Option<Drawing>) -> Result<()> {
     let Some(path) = path else { return Ok(()) };
-    accepted(Some(path))?;
     let drawn = draw().ok_or_else(|| {
         Error::input(format!(
             "--plot {}: there is no profile to draw, for the model has no cross-stream coordinate",
@@ -30,34 +31,15 @@ pub fn drawn(path: Option<&Path>, draw: impl FnOnce() -> Option<Drawing>) -> Res
     drawn.write(path)
 }
 
-/// Whether a picture could be written there, before anything is computed.
+/// Refuses what cannot be written, or must not be replaced, before anything is computed.
 ///
 /// # Errors
-/// A path that is no .svg or .png.
-pub fn accepted(path: Option<&Path>) -> Result<()> {
-    match path {
-        Some(path) if !is_picture(path) => Err(Error::input(format!(
-            "--plot {}: it accepts .svg, .png",
-            path.display()
-        ))),
-        _ => Ok(()),
-    }
-}
-
-/// Whether picture and data could be written there, before anything is computed.
-///
-/// # Errors
-/// A picture that is no .svg or .png, data that are no .npz or .nc.
-pub fn all_accepted(files: &Files) -> Result<()> {
-    accepted(files.plot.as_deref())?;
-    let other = |path: &&PathBuf| path.extension().is_none_or(|e| e != "npz" && e != "nc");
-    match files.out.iter().find(other) {
-        Some(path) => Err(Error::input(format!(
-            "--out {}: it accepts .npz, .nc",
-            path.display()
-        ))),
-        None => Ok(()),
-    }
+/// A picture that is no .svg or .png, data that are no .npz or .nc; see [`outputs::check`].
+pub fn check(files: &Files) -> Result<()> {
+    outputs::check_picture(files.plot.as_deref())?;
+    outputs::check_data(&files.out, &outputs::LINE_FORMATS)?;
+    let paths = files.plot.iter().chain(&files.out).map(PathBuf::as_path);
+    outputs::check(paths, Overwrite::forced(files.force))
 }
 
 /// Stores data, with what they were computed from, wherever that is asked for.
@@ -78,9 +60,9 @@ pub fn stored(
 /// The modes at a wavenumber, drawn and stored where that is asked for.
 ///
 /// # Errors
-/// As [`drawn`] and [`all_accepted`].
+/// As [`drawn`] and [`check`].
 pub fn modes(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -> Result<()> {
-    all_accepted(files)?;
+    check(files)?;
     if files.plot.is_none() && files.out.is_empty() {
         return Ok(());
     }

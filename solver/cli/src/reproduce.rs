@@ -2,6 +2,7 @@
 
 use crate::cluster::share;
 use crate::inspect;
+use crate::interrupt::{self, Kept};
 use crate::progress::Bar;
 use landau_report::library::Library;
 use landau_report::reproduce::{Errata, Provenance, Study, Verdict, Workshop, beside};
@@ -39,6 +40,7 @@ pub fn reproduce(
         kept: kept(out),
         provenance: provenance(),
     };
+    interrupt::keeping(Kept::Tasks(shop.kept.clone()));
     if let Some(text) = shard {
         let share = share(text)?;
         let count = shop.run_share(share, &Bar::new("reproducing"))?;
@@ -117,7 +119,8 @@ fn kept(out: &Path) -> PathBuf {
 
 /// The command, the time and the commit.
 fn provenance() -> Provenance {
-    let mut command: Vec<String> = std::env::args().collect();
+    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+    let mut command: Vec<String> = words.collect();
     if let Some(program) = command.first_mut() {
         *program = "landau".to_owned();
     }

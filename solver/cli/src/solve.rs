@@ -2,14 +2,14 @@
 
 use crate::arguments::{Common, CriticalOptions, Files, Of, SweepOptions, range};
 use crate::asked::{asked, resumed};
+use crate::interrupt::{self, Kept};
 use crate::progress::Bar;
-use crate::{cluster, interrupt, picture};
-use landau_report::data::csvw::write_beside;
-use landau_report::data::lines;
+use crate::{cluster, outputs, picture, script};
+use landau_report::data::{lines, table};
 use landau_report::figure;
 use landau_report::library::column;
 use landau_solver::error::{Error, Result};
-use landau_solver::file::destination;
+use landau_solver::file::Overwrite;
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{Quantity, Question};
 use landau_solver::study::minimise::minimise;
@@ -19,12 +19,12 @@ use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, Sweep};
 use landau_solver::study::verify::Certificate;
-use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality};
+use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality, journal_path};
 use landau_solver::words;
 use serde_json::json;
 
 pub fn base(setup: &Setup, points: usize, files: &Files, common: &Common) -> Result<()> {
-    picture::all_accepted(files)?;
+    picture::check(files)?;
     let found = BaseReport::compute(setup, points)?;
     if let Some(plot) = &files.plot {
         let fine = BaseReport::compute(setup, figure::POINTS)?;
@@ -43,7 +43,7 @@ pub fn base(setup: &Setup, points: usize, files: &Files, common: &Common) -> Res
 }
 
 pub fn spectrum(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -> Result<()> {
-    picture::all_accepted(files)?;
+    picture::check(files)?;
     let (k, _) = asked(setup, k, common)?;
     let found = SpectrumReport::compute(setup, k)?;
     picture::drawn(files.plot.as_deref(), || figure::spectrum(&found))?;
@@ -135,7 +135,9 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         k,
         near: common.near,
     };
-    picture::accepted(options.plot.as_deref())?;
+    let overwrite = Overwrite::forced(options.force);
+    outputs::check_picture(options.plot.as_deref())?;
+    outputs::check(options.plot.as_deref(), overwrite)?;
     let bar = Bar::new("scanning");
     let found = match range_of_k {
         Some(bounds) => {
@@ -169,7 +171,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
     }
     if !others.is_empty() {
         let others: Vec<String> = others.iter().map(|c| format!("{:.8}", c.value)).collect();
-        eprintln!(
+        note!(
             "note: further points in the interval: {}",
             others.join(", ")
         );
@@ -240,28 +242,26 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
             .collect::<Result<_>>()?,
     };
     if let Some(engine) = options.emit {
-        return cluster::emit(engine, options);
+        return script::emit(engine, &sweep, options, common);
     }
     if let Some(share) = &options.shard {
         return cluster::run_share(&sweep, share, options, common);
     }
-    if let Some(plot) = &options.plot {
-        picture::accepted(Some(plot))?;
-        destination(plot)?;
-    }
-    if !options.force {
-        sweep.check_output(&options.out)?;
-    }
-    interrupt::keeping(&options.out);
-    let rows = sweep.run_to(&options.out, &Bar::new("sweeping"), resumed)?;
+    let overwrite = Overwrite::forced(options.force);
+    outputs::check_picture(options.plot.as_deref())?;
+    outputs::check(options.plot.as_deref(), overwrite)?;
+    let target = table::check(&options.out, &sweep.identity(), overwrite)?;
+    interrupt::keeping(Kept::Journal(journal_path(&target)));
+    let bar = Bar::new("sweeping");
+    let rows = table::sweep_into(&options.out, &sweep, overwrite, &bar, resumed)?;
     interrupt::finished();
-    write_beside(&options.out, sweep.header(), &sweep.facts())?;
     if let Some(path) = &options.plot
         && let Some(drawn) = picture::sweep(setup, &sweep, &rows)
     {
         drawn.write(path)?;
     }
     let good = rows.iter().filter(|r| r.status == "ok").count();
+    let numbered = rows.iter().filter(|r| r.c0.is_some()).count();
     let unstable = rows
         .iter()
         .filter(|r| r.c0.is_some_and(|c| c[0] > 0.0))
@@ -269,17 +269,17 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
     if common.json {
         say!(
             "{}",
-            json!({"out": options.out.display().to_string(), "rows": rows.len(), "ok": good, "unstable": unstable})
+            json!({"out": options.out.display().to_string(), "rows": rows.len(), "ok": good, "numbered": numbered, "unstable": unstable})
         );
     } else {
         picture::table(&sweep, &rows);
         say!(
-            "{} rows, {good} with a number, {unstable} unstable: {}",
+            "{} rows, {numbered} with a number, {good} ok, {unstable} unstable: {}",
             rows.len(),
             options.out.display()
         );
     }
-    if good == 0 {
+    if numbered == 0 {
         return Err(Error::computation(format!(
             "no point of the sweep has a number: {}",
             rows[0].status

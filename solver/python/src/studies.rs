@@ -2,11 +2,11 @@
 
 use crate::model::Core;
 use crate::watch::watched;
-use landau_report::data::csvw::write_beside;
+use landau_report::data::table;
 use landau_report::library::column;
 use landau_solver::error::{Error, Result};
-use landau_solver::file::write_whole;
-use landau_solver::model::C64;
+use landau_solver::file::Overwrite;
+use landau_solver::model::{C64, Model};
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{self, Quantity, Question};
 use landau_solver::study::minimise::minimise;
@@ -24,18 +24,19 @@ use landau_solver::weakly::{Selection, Window, pattern};
 use landau_solver::words;
 use pyo3::prelude::*;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Re and Im of an eigenvalue that a mode is near to.
 type Near = Option<(f64, f64)>;
 
-fn setup(core: &Core, set: &[String], resolution: usize) -> Result<Setup> {
+fn setup(model: Arc<dyn Model>, set: &[String], resolution: usize) -> Result<Setup> {
     if !(4..=1000).contains(&resolution) {
         return Err(Error::input(format!(
             "M = {resolution} is out of range: it accepts 4 to 1000"
         )));
     }
-    let mut setup = Setup::new(core.model.clone(), resolution);
+    let mut setup = Setup::new(model, resolution);
     setup.set(set)?;
     Ok(setup)
 }
@@ -136,8 +137,9 @@ impl Core {
         resolution: usize,
         points: usize,
     ) -> PyResult<String> {
-        watched(py, |_| {
-            let found = BaseReport::compute(&setup(self, &set, resolution)?, points)?;
+        let model = self.model.clone();
+        watched(py, move |_| {
+            let found = BaseReport::compute(&setup(model, &set, resolution)?, points)?;
             Ok(found.json().to_string())
         })
     }
@@ -149,10 +151,13 @@ impl Core {
         resolution: usize,
         k: f64,
     ) -> PyResult<String> {
-        watched(py, |_| {
-            Ok(SpectrumReport::compute(&setup(self, &set, resolution)?, k)?
-                .json()
-                .to_string())
+        let model = self.model.clone();
+        watched(py, move |_| {
+            Ok(
+                SpectrumReport::compute(&setup(model, &set, resolution)?, k)?
+                    .json()
+                    .to_string(),
+            )
         })
     }
 
@@ -165,8 +170,9 @@ impl Core {
         near: Near,
         order: usize,
     ) -> PyResult<String> {
-        watched(py, |_| {
-            let setup = setup(self, &set, resolution)?;
+        let model = self.model.clone();
+        watched(py, move |_| {
+            let setup = setup(model, &set, resolution)?;
             Ok(PointReport::compute(&setup, k, selection(near), order)?
                 .json()
                 .to_string())
@@ -182,8 +188,9 @@ impl Core {
         k: f64,
         near: Near,
     ) -> PyResult<String> {
-        watched(py, |_| {
-            let setup = setup(self, &set, resolution)?;
+        let model = self.model.clone();
+        watched(py, move |_| {
+            let setup = setup(model, &set, resolution)?;
             Ok(modes(&Modes::compute(&setup, k, selection(near))?).to_string())
         })
     }
@@ -197,8 +204,9 @@ impl Core {
         modes: Vec<(f64, Near)>,
         order: usize,
     ) -> PyResult<String> {
-        watched(py, |_| {
-            let setup = setup(self, &set, resolution)?;
+        let model = self.model.clone();
+        watched(py, move |_| {
+            let setup = setup(model, &set, resolution)?;
             let choices = modes.iter().map(|(k, near)| ModeChoice {
                 k: *k,
                 near: near.map(|(re, im)| C64::new(re, im)),
@@ -223,8 +231,9 @@ impl Core {
         minimize: Option<(f64, f64)>,
         near: Near,
     ) -> PyResult<String> {
-        watched(py, |watch| {
-            let setup = setup(self, &set, resolution)?;
+        let model = self.model.clone();
+        watched(py, move |watch| {
+            let setup = setup(model, &set, resolution)?;
             let axis = Axis::named(setup.model.as_ref(), &vary)?;
             let (from, to) = between;
             for value in [from, to] {
@@ -271,22 +280,43 @@ impl Core {
         k: Option<f64>,
         near: Near,
         columns: Vec<String>,
-        out: Option<String>,
+        out: Option<PathBuf>,
+        force: bool,
     ) -> PyResult<String> {
-        watched(py, |watch| {
-            let setup = setup(self, &set, resolution)?;
+        let model = self.model.clone();
+        watched(py, move |watch| {
+            let setup = setup(model, &set, resolution)?;
             let sweep = swept(&setup, axes, k, near, &columns)?;
             let rows = match out {
                 Some(path) => {
-                    let path = Path::new(&path);
-                    sweep.check_output(path)?;
-                    let rows = sweep.run_to(path, watch, |_| {})?;
-                    write_beside(path, sweep.header(), &sweep.facts())?;
-                    rows
+                    let overwrite = Overwrite::forced(force);
+                    table::sweep_into(&path, &sweep, overwrite, watch, |_| {})?
                 }
                 None => sweep.run(watch),
             };
             Ok(rows.iter().map(row).collect::<Value>().to_string())
+        })
+    }
+
+    /// Refuses to replace a file that is no table of this sweep, before anything is computed.
+    #[allow(clippy::too_many_arguments, reason = "the options of the command")]
+    fn check_table(
+        &self,
+        py: Python<'_>,
+        set: Vec<String>,
+        resolution: usize,
+        axes: Vec<(String, Vec<f64>)>,
+        k: Option<f64>,
+        near: Near,
+        columns: Vec<String>,
+        out: PathBuf,
+        force: bool,
+    ) -> PyResult<()> {
+        let model = self.model.clone();
+        watched(py, move |_| {
+            let setup = setup(model, &set, resolution)?;
+            let sweep = swept(&setup, axes, k, near, &columns)?;
+            table::check(&out, &sweep.identity(), Overwrite::forced(force)).map(|_| ())
         })
     }
 
@@ -302,23 +332,23 @@ impl Core {
         near: Near,
         columns: Vec<String>,
         share: (usize, usize),
-        out: String,
+        out: PathBuf,
     ) -> PyResult<()> {
-        watched(py, |watch| {
-            let setup = setup(self, &set, resolution)?;
+        let model = self.model.clone();
+        watched(py, move |watch| {
+            let setup = setup(model, &set, resolution)?;
             let share = Share::parse(&format!("{}/{}", share.0, share.1))?;
-            swept(&setup, axes, k, near, &columns)?.run_share(share, Path::new(&out), watch, |_| {})
+            let sweep = swept(&setup, axes, k, near, &columns)?;
+            sweep.run_share(share, &out, Overwrite::Recognised, watch, |_| {})
         })
     }
 
     /// Puts the files of all shares together.
     #[staticmethod]
-    fn merge(py: Python<'_>, shards: Vec<PathBuf>, out: PathBuf) -> PyResult<()> {
-        watched(py, |_| {
-            let merged = merge(&shards)?;
-            write_whole(&out, &merged.table)?;
-            let header = merged.header.iter().map(String::as_str);
-            write_beside(&out, header, &merged.facts)
+    #[pyo3(signature = (shards, out, force=false))]
+    fn merge(py: Python<'_>, shards: Vec<PathBuf>, out: PathBuf, force: bool) -> PyResult<()> {
+        watched(py, move |_| {
+            table::write_merged(&out, &merge(&shards)?, Overwrite::forced(force))
         })
     }
 
@@ -331,8 +361,9 @@ impl Core {
         near: Near,
         order: usize,
     ) -> PyResult<String> {
-        watched(py, |_| {
-            let setup = setup(self, &set, resolution)?;
+        let model = self.model.clone();
+        watched(py, move |_| {
+            let setup = setup(model, &set, resolution)?;
             Ok(Certificate::compute(&setup, k, selection(near), order)?
                 .json()
                 .to_string())
@@ -352,8 +383,9 @@ impl Core {
         points: (usize, usize),
         wavelengths: f64,
     ) -> PyResult<String> {
-        watched(py, |_| {
-            let setup = setup(self, &set, resolution)?;
+        let model = self.model.clone();
+        watched(py, move |_| {
+            let setup = setup(model, &set, resolution)?;
             check_wavenumber(k)?;
             let (columns, rows) = points;
             let window = Window {

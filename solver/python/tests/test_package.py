@@ -295,3 +295,57 @@ with LocalCluster(folder + "/server" + sys.argv[2], WorkerConfig(cores=1)) as cl
     plain = Model("vibrated_bed").sweep(k=np.linspace(0.05, 0.17, 3000), M=40, out=tmp_path / "plain.csv")
     assert (tmp_path / "shared.csv").read_bytes() == (tmp_path / "plain.csv").read_bytes()
     assert np.all(plain.c0.real != 0)
+
+
+def forked(queue):
+    sweep = Model("swift_hohenberg_strip").sweep(k=np.linspace(0.9, 1.1, 60), r=1.2, M=20)
+    queue.put(sweep.c2)
+
+
+def test_a_forked_process_computes():
+    """A fork copies no thread: the child starts threads of its own, and finds what the parent finds."""
+    import multiprocessing
+
+    context = multiprocessing.get_context("fork")
+    expected = Model("swift_hohenberg_strip").sweep(k=np.linspace(0.9, 1.1, 60), r=1.2, M=20).c2
+    for _ in range(2):
+        queue = context.Queue()
+        child = context.Process(target=forked, args=(queue,), daemon=True)
+        child.start()
+        found = queue.get(timeout=60)
+        child.join(timeout=60)
+        assert child.exitcode == 0
+        assert np.array_equal(found, expected, equal_nan=True)
+    # The parent's threads are still its own.
+    assert np.array_equal(Model("swift_hohenberg_strip").sweep(k=np.linspace(0.9, 1.1, 60), r=1.2, M=20).c2, expected)
+
+
+def test_ctrl_c_ends_a_single_computation():
+    """A computation without steps is left to itself, and the next one does not wait for it."""
+    bed = Model("vibrated_bed")
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    started = time.monotonic()
+    threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            bed.point(k=0.16, M=900)
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    assert time.monotonic() - started < 3.0
+    assert Model("swift_hohenberg").point(k=1, r=0.1).c0.real == pytest.approx(0.1, abs=1e-12)
+    assert time.monotonic() - started < 10.0
+
+
+def test_other_tables_are_kept(tmp_path):
+    """A table of another sweep, and a file of somebody else, are replaced with `force` alone."""
+    model = Model("swift_hohenberg")
+    out = tmp_path / "a.csv"
+    model.sweep(k=[0.9, 1.0], r=0.1, out=out)
+    model.sweep(k=[0.9, 1.0], r=0.1, out=out)
+    with pytest.raises(InputError, match="r is 0.2 here and 0.1 there"):
+        model.sweep(k=[0.9, 1.0], r=0.2, out=out)
+    model.sweep(k=[0.9, 1.0], r=0.2, out=out, force=True)
+    out.write_text("mine\n")
+    with pytest.raises(InputError, match="a.csv"):
+        model.sweep(k=[0.9, 1.0], r=0.2, out=out)
+    assert out.read_text() == "mine\n"

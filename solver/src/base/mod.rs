@@ -233,9 +233,11 @@ fn describe(model: &dyn Model, parameters: &Parameters, trouble: &Trouble, place
         .pairs()
         .map(|(id, info)| {
             let (name, value) = (&info.name, parameters.shown(structure, id));
-            match parameters.automatic[id] {
-                true => format!("{name} = auto (tried from {value})"),
-                false => format!("{name} = {value}"),
+            if parameters.automatic[id] {
+                let start = parameters.values[id];
+                format!("{name} = {value} (tried from {start})")
+            } else {
+                format!("{name} = {value}")
             }
         })
         .collect();

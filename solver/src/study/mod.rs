@@ -4,6 +4,7 @@ pub mod accuracy;
 pub mod amplitudes;
 pub mod critical;
 pub mod derived;
+pub mod identity;
 mod journal;
 pub use journal::journal_path;
 pub use progress::{Progress, Silent};

@@ -1,7 +1,9 @@
 //! One row of a sweep's table, and the columns that can be drawn.
 
+use super::identity::SweepIdentity;
 use crate::error::{Error, Result};
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
 
 /// Columns of numbers after the axes.
 pub const NUMBERS: [&str; 9] = [
@@ -89,6 +91,19 @@ pub enum Column {
     Amplitude,
     /// A_e of a stable one: a threshold.
     Threshold,
+}
+
+/// The table of a sweep, and what stands beside it.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// What it was computed from, for machines: by it the table is recognised.
+    pub sweep: SweepIdentity,
+    /// Names of the columns.
+    pub header: Vec<String>,
+    /// What it was computed from, for readers.
+    pub facts: Map<String, Value>,
+    /// The bytes of the CSV file.
+    pub csv: Vec<u8>,
 }
 
 /// A table as CSV.

@@ -2,10 +2,11 @@
 //! whole; merged, the shares are the table that one machine would have written, byte for byte.
 
 use super::Progress;
-use super::row::{Row, table};
+use super::identity::SweepIdentity;
+use super::row::{Row, Table, table};
 use super::sweep::{Resumed, Sweep};
 use crate::error::{Error, Result};
-use crate::file::{destination, hash, write_whole};
+use crate::file::{Overwrite, destination, hash, read_text, refused, write_whole};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -21,15 +22,21 @@ pub struct Share {
     pub count: usize,
 }
 
+/// The largest number of shares.
+pub const MOST_SHARES: usize = 100_000;
+
+/// Largest file of a share, in bytes.
+const SHARE_LIMIT: u64 = 4 << 30;
+
 impl Share {
     /// `I/N`
     ///
     /// # Errors
-    /// Anything else, an index out of range.
+    /// Anything else, an index out of range, more than [`MOST_SHARES`] shares.
     pub fn parse(text: &str) -> Result<Self> {
         let wrong = || {
             Error::input(format!(
-                "--shard {text}: it accepts I/N with 1 ≤ I ≤ N, or slurm"
+                "--shard {text}: it accepts I/N with 1 ≤ I ≤ N ≤ {MOST_SHARES}, or slurm"
             ))
         };
         let (index, count) = text.split_once('/').ok_or_else(wrong)?;
@@ -38,16 +45,26 @@ impl Share {
             index: number(index)?,
             count: number(count)?,
         };
-        match (1..=share.count).contains(&share.index) {
-            true => Ok(share),
-            false => Err(wrong()),
+        if (1..=share.count).contains(&share.index) && share.count <= MOST_SHARES {
+            Ok(share)
+        } else {
+            Err(wrong())
         }
     }
 
     /// Its part of so many chunks: contiguous, of sizes that differ by one at most.
     pub fn part(self, chunks: usize) -> Range<usize> {
-        let start = |index: usize| index * chunks / self.count;
+        let start = |index: usize| {
+            let start = index as u128 * chunks as u128 / self.count as u128;
+            usize::try_from(start).unwrap_or(chunks)
+        };
         start(self.index - 1)..start(self.index)
+    }
+
+    /// The index of the share, one of `count`, that holds a chunk: the least i with ⌊i·chunks/count⌋ > chunk.
+    fn index_of(chunk: usize, chunks: usize, count: usize) -> usize {
+        let index = ((chunk as u128 + 1) * count as u128).div_ceil(chunks as u128);
+        usize::try_from(index).unwrap_or(count)
     }
 }
 
@@ -56,8 +73,8 @@ impl Share {
 struct Shard {
     /// Version of this format.
     landau_shard: u32,
-    /// What the sweep was made for.
-    sweep: String,
+    /// What the sweep is.
+    sweep: SweepIdentity,
     header: Vec<String>,
     /// What the whole was computed from.
     facts: Map<String, Value>,
@@ -69,32 +86,47 @@ struct Shard {
     sum: String,
 }
 
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
+
+/// The version of a share alone.
+#[derive(Deserialize)]
+struct Format {
+    landau_shard: u32,
+}
 
 impl Shard {
+    /// A checksum over everything but `sum`.
     fn checksum(&self) -> Result<String> {
-        let rows =
-            serde_json::to_string(&self.rows).map_err(|e| Error::computation(e.to_string()))?;
-        let text = format!(
-            "{} {:?} {:?} {} {:?} {rows}",
-            self.sweep, self.header, self.facts, self.chunks, self.share
-        );
+        let Shard {
+            landau_shard,
+            sweep,
+            header,
+            facts,
+            chunks,
+            share,
+            rows,
+            sum: _,
+        } = self;
+        let parts = (landau_shard, sweep, header, facts, chunks, share, rows);
+        let text = serde_json::to_string(&parts).map_err(|e| Error::computation(e.to_string()))?;
         Ok(format!("{:016x}", hash(text.bytes())))
     }
 
     fn read(path: &Path) -> Result<Self> {
         let bad = |why: String| Error::input(format!("{}: {why}", path.display()));
-        let text =
-            std::fs::read_to_string(path).map_err(|e| bad(format!("it cannot be read: {e}")))?;
+        let text = read_text(path, SHARE_LIMIT)?;
+        // Read by itself, for another format has other keys.
+        let format = serde_json::from_str::<Format>(&text).map(|f| f.landau_shard);
+        if let Ok(format) = format
+            && format != VERSION
+        {
+            return Err(bad(format!(
+                "a share of format {format}: this is {VERSION}"
+            )));
+        }
         let shard: Shard = serde_json::from_str(&text).map_err(|_| {
             bad("this is no share of a sweep, as `sweep --shard` writes it".to_owned())
         })?;
-        if shard.landau_shard != VERSION {
-            return Err(bad(format!(
-                "a share of format {}: this is {VERSION}",
-                shard.landau_shard
-            )));
-        }
         if shard.sum != shard.checksum()? {
             return Err(bad("it is damaged: its checksum does not fit".to_owned()));
         }
@@ -103,8 +135,8 @@ impl Shard {
 }
 
 /// Whether a file holds this share of this sweep already.
-fn is_done(path: &Path, sweep: &str, share: Share) -> bool {
-    Shard::read(path).is_ok_and(|known| known.sweep == sweep && known.share == share)
+fn is_done(path: &Path, sweep: &SweepIdentity, share: Share) -> bool {
+    Shard::read(path).is_ok_and(|shard| shard.sweep == *sweep && shard.share == share)
 }
 
 impl Sweep<'_> {
@@ -112,27 +144,27 @@ impl Sweep<'_> {
     /// not done again.
     ///
     /// # Errors
-    /// A file that is something else, or cannot be written.
+    /// A file that is something else, unless `overwrite` allows it to be replaced, or that cannot be written.
     pub fn run_share(
         &self,
         share: Share,
         out: &Path,
+        overwrite: Overwrite,
         progress: &dyn Progress,
         resumed: impl FnOnce(Resumed),
     ) -> Result<()> {
         let target = destination(out)?;
-        let sweep = self.fingerprint();
+        let sweep = self.identity();
         if target.exists() {
             if is_done(&target, &sweep, share) {
                 return Ok(());
             }
-            return Err(Error::input(format!(
-                "{} exists and is another share, or no share: remove it, or choose another --out",
-                out.display()
-            )));
+            if overwrite == Overwrite::Recognised {
+                return Err(refused(out, "it is another share, or no share"));
+            }
         }
         let part = share.part(self.chunk_count());
-        let (rows, journal) = self.journalled(&target, part, progress, resumed)?;
+        let (rows, journal) = self.journalled(&target, overwrite, part, progress, resumed)?;
         let mut shard = Shard {
             landau_shard: VERSION,
             sweep,
@@ -151,21 +183,11 @@ impl Sweep<'_> {
     }
 }
 
-/// What all shares make together.
-pub struct Merged {
-    /// The table, as CSV.
-    pub table: Vec<u8>,
-    /// Names of its columns.
-    pub header: Vec<String>,
-    /// What it was computed from.
-    pub facts: Map<String, Value>,
-}
-
 /// The table that all shares make together.
 ///
 /// # Errors
-/// Names shares of different sweeps, chunks that two of them hold, and what is missing.
-pub fn merge(paths: &[PathBuf]) -> Result<Merged> {
+/// Names the part in which sweeps differ, chunks that two shares hold, and what is missing.
+pub fn merge(paths: &[PathBuf]) -> Result<Table> {
     let Some(first_path) = paths.first() else {
         return Err(Error::input("name the shares to merge"));
     };
@@ -173,57 +195,81 @@ pub fn merge(paths: &[PathBuf]) -> Result<Merged> {
     let mut rows: BTreeMap<usize, (Vec<Row>, &PathBuf)> = BTreeMap::new();
     for path in paths {
         let shard = Shard::read(path)?;
-        if (&shard.sweep, &shard.header, shard.chunks)
-            != (&first.sweep, &first.header, first.chunks)
-        {
+        if let Some(difference) = difference(&first, &shard) {
             return Err(Error::input(format!(
-                "{} and {} are shares of different sweeps: model, laws, parameters, axes, M and version have to \
-                 agree\n  {}\n  {}",
+                "{} and {} are shares of different sweeps: {difference}",
                 first_path.display(),
                 path.display(),
-                first.sweep,
-                shard.sweep
             )));
         }
-        for (chunk, own) in shard.rows {
-            if let Some((_, other)) = rows.get(&chunk) {
+        for (chunk, rows_of_chunk) in shard.rows {
+            if let Some((_, first_holder)) = rows.get(&chunk) {
                 return Err(Error::input(format!(
                     "{} and {} overlap: both hold part {} of {}",
-                    other.display(),
+                    first_holder.display(),
                     path.display(),
                     chunk + 1,
                     first.chunks
                 )));
             }
-            rows.insert(chunk, (own, path));
+            rows.insert(chunk, (rows_of_chunk, path));
         }
     }
-    let missing: Vec<usize> = (0..first.chunks)
-        .filter(|c| !rows.contains_key(c))
-        .collect();
+    let missing = missing(rows.keys().copied(), first.chunks, first.share.count);
     if !missing.is_empty() {
-        let count = first.share.count;
-        let shares = (1..=count).filter(|&index| {
-            let part = Share { index, count }.part(first.chunks);
-            missing.iter().any(|chunk| part.contains(chunk))
-        });
-        let shares: Vec<String> = shares.map(|index| format!("{index}/{count}")).collect();
         return Err(Error::input(format!(
-            "the shares leave gaps: missing is {}",
-            shares.join(", ")
+            "the shares leave gaps: missing is {missing}"
         )));
     }
-    let rows: Vec<Row> = rows.into_values().flat_map(|(own, _)| own).collect();
-    Ok(Merged {
-        table: table(first.header.iter().map(String::as_str), &rows)?,
+    let rows: Vec<Row> = rows.into_values().flat_map(|(rows, _)| rows).collect();
+    Ok(Table {
+        csv: table(first.header.iter().map(String::as_str), &rows)?,
         header: first.header,
         facts: first.facts,
+        sweep: first.sweep,
     })
+}
+
+/// What keeps two shares from being parts of one table.
+fn difference(first: &Shard, shard: &Shard) -> Option<String> {
+    let of_layout = || {
+        let layout = |shard: &Shard| (shard.chunks, shard.header.clone());
+        (layout(first) != layout(shard)).then(|| "their columns or parts differ".to_owned())
+    };
+    first.sweep.difference(&shard.sweep).or_else(of_layout)
+}
+
+/// Shares that a message names at most.
+const NAMED: usize = 20;
+
+/// The shares, of `count`, whose chunks are not among those that are there, in ascending order; in words.
+fn missing(there: impl Iterator<Item = usize>, chunks: usize, count: usize) -> String {
+    let mut next = 0;
+    let mut indices: Vec<usize> = Vec::new();
+    let mut are_more = false;
+    for chunk in there.chain([chunks]) {
+        // The chunks from `next` to `chunk` are missing; one share after another.
+        while next < chunk && !are_more {
+            let index = Share::index_of(next, chunks, count);
+            if indices.last() != Some(&index) {
+                are_more = indices.len() == NAMED;
+                indices.push(index);
+            }
+            next = Share { index, count }.part(chunks).end;
+        }
+        next = chunk.saturating_add(1);
+    }
+    indices.truncate(NAMED);
+    let mut names: Vec<String> = indices.iter().map(|i| format!("{i}/{count}")).collect();
+    if are_more {
+        names.push("others".to_owned());
+    }
+    names.join(", ")
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Share;
+    use super::{Share, missing};
 
     /// Every chunk once, whatever the number of shares.
     #[test]
@@ -234,14 +280,38 @@ mod tests {
                 assert_eq!(parts.collect::<Vec<_>>(), (0..chunks).collect::<Vec<_>>());
             }
         }
-        assert!(
-            Share::parse("3/2").is_err()
-                && Share::parse("0/2").is_err()
-                && Share::parse("2").is_err()
-        );
+        for wrong in ["3/2", "0/2", "2", "1/1000000000000", "1/100001"] {
+            assert!(Share::parse(wrong).is_err(), "{wrong}");
+        }
         assert_eq!(
             Share::parse("2/3").expect("a share"),
             Share { index: 2, count: 3 }
         );
+    }
+
+    /// The index of a share from a chunk, beside the parts of all shares.
+    #[test]
+    fn the_share_of_a_chunk() {
+        for chunks in [1, 7, 40, 101] {
+            for count in [1, 2, 3, 8, 200] {
+                for index in 1..=count {
+                    for chunk in (Share { index, count }).part(chunks) {
+                        assert_eq!(Share::index_of(chunk, chunks, count), index);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_missing() {
+        let said = |there: &[usize], chunks, count| missing(there.iter().copied(), chunks, count);
+        assert_eq!(said(&[0, 1, 2, 3], 4, 2), "");
+        assert_eq!(said(&[0, 2, 3], 4, 2), "1/2");
+        assert_eq!(said(&[1, 3], 4, 2), "1/2, 2/2");
+        // No work in proportion to the number of shares, or of chunks.
+        let huge = said(&[5], usize::MAX, 1_000_000_000_000);
+        assert!(huge.starts_with("1/1000000000000, 2/") && huge.ends_with("others"));
+        assert!(huge.len() < 1000);
     }
 }

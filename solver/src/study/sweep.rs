@@ -6,12 +6,13 @@
 
 use super::accuracy::{landau_error, stands};
 use super::derived::Derived;
+use super::identity::SweepIdentity;
 use super::journal::Journal;
-use super::row::{COLUMNS, Row, table};
+use super::row::{COLUMNS, Row, Table, table};
 use super::{Axis, Carried, Progress, Setup};
 use crate::base::BaseState;
-use crate::error::{Error, Result};
-use crate::file::destination;
+use crate::error::Result;
+use crate::file::{Overwrite, destination};
 use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
@@ -89,54 +90,30 @@ impl Sweep<'_> {
         rows.into_values().flatten().collect()
     }
 
-    /// Whether a file holds a table of this sweep's columns and places.
-    fn is_own(&self, path: &Path) -> bool {
-        let Ok(mut reader) = csv::Reader::from_path(path) else {
-            return false;
-        };
-        if reader.headers().is_ok_and(|h| h.iter().ne(self.header())) {
-            return false;
-        }
-        let places = (0..self.chunk_count()).flat_map(|chunk| self.places(chunk));
-        let expected = places.map(|place| place.iter().map(f64::to_string).collect::<Vec<_>>());
-        let axes = self.ranges.len();
-        let found = reader.records().map(|record| match record {
-            Ok(record) => record.iter().take(axes).map(str::to_owned).collect(),
-            Err(_) => Vec::new(),
-        });
-        found.eq(expected)
-    }
-
-    /// Refuses an output that is somebody else's file.
+    /// Computes the rows of a table, which `store` writes to the file that it is given; an interrupted run leaves a
+    /// journal beside the table, from which the next one goes on. `resumed` is told what stood there.
     ///
     /// # Errors
-    /// A file that is no table of this sweep, a folder, a device.
-    pub fn check_output(&self, out: &Path) -> Result<()> {
-        let target = destination(out)?;
-        if target.exists() && !self.is_own(&target) {
-            return Err(Error::input(format!(
-                "{} exists and is no table of this sweep: remove it, choose another --out, or give --force",
-                out.display()
-            )));
-        }
-        Ok(())
-    }
-
-    /// Computes the rows into a CSV file, whole or not at all; an interrupted run leaves a journal
-    /// beside it, from which the next one goes on. `resumed` is told what it found there.
-    ///
-    /// # Errors
-    /// Files that cannot be written, another run with the same output.
+    /// Files that cannot be written, or that `overwrite` does not allow to replace; another run with the same output.
     pub fn run_to(
         &self,
         out: &Path,
+        overwrite: Overwrite,
         progress: &dyn Progress,
         resumed: impl FnOnce(Resumed),
+        store: impl FnOnce(&Path, &Table) -> Result<()>,
     ) -> Result<Vec<Row>> {
         let target = destination(out)?;
-        let (rows, journal) = self.journalled(&target, 0..self.chunk_count(), progress, resumed)?;
+        let all = 0..self.chunk_count();
+        let (rows, journal) = self.journalled(&target, overwrite, all, progress, resumed)?;
         let rows: Vec<Row> = rows.into_values().flatten().collect();
-        crate::file::write_whole(&target, &table(self.header(), &rows)?)?;
+        let table = Table {
+            sweep: self.identity(),
+            header: self.header().map(str::to_owned).collect(),
+            facts: self.facts(),
+            csv: table(self.header(), &rows)?,
+        };
+        store(&target, &table)?;
         journal.remove();
         Ok(rows)
     }
@@ -145,11 +122,12 @@ impl Sweep<'_> {
     pub(super) fn journalled(
         &self,
         target: &Path,
+        overwrite: Overwrite,
         part: std::ops::Range<usize>,
         progress: &dyn Progress,
         resumed: impl FnOnce(Resumed),
     ) -> Result<(BTreeMap<usize, Vec<Row>>, Journal)> {
-        let journal = Journal::open(target, self.fingerprint(), |chunk, rows| {
+        let journal = Journal::open(target, &self.identity(), overwrite, |chunk, rows| {
             part.contains(&chunk)
                 && rows
                     .iter()
@@ -157,10 +135,10 @@ impl Sweep<'_> {
                     .eq(self.places(chunk).iter())
         })?;
         resumed(Resumed {
-            taken: journal.known.values().map(Vec::len).sum(),
+            taken: journal.finished.values().map(Vec::len).sum(),
             damaged: journal.damaged,
         });
-        let rows = self.run_chunks(part, &journal.known, progress, &|chunk, rows| {
+        let rows = self.run_chunks(part, &journal.finished, progress, &|chunk, rows| {
             journal.record(chunk, rows)
         });
         Ok((rows, journal))
@@ -347,22 +325,9 @@ impl Sweep<'_> {
         axes.chain(COLUMNS).chain(derived)
     }
 
-    /// What a journal must have been made for.
-    pub(super) fn fingerprint(&self) -> String {
-        let structure = self.setup.model.structure();
-        let derived: Vec<&str> = self.derived.iter().map(|d| d.name.as_str()).collect();
-        format!(
-            "{} {:?} {:?} M={} k={:?} near={:?} {:?} {derived:?} v{} {}",
-            structure.name,
-            self.setup.parameters.values,
-            self.setup.parameters.automatic,
-            self.setup.resolution,
-            self.k,
-            self.near,
-            self.ranges,
-            env!("CARGO_PKG_VERSION"),
-            self.setup.hash()
-        )
+    /// What its files were computed from.
+    pub fn identity(&self) -> SweepIdentity {
+        SweepIdentity::new(self)
     }
 }
 

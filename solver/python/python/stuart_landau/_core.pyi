@@ -47,7 +47,19 @@ class Core:
         near: Near,
         columns: list[str],
         out: str | None,
+        force: bool,
     ) -> str: ...
+    def check_table(
+        self,
+        set: list[str],
+        resolution: int,
+        axes: list[tuple[str, list[float]]],
+        k: float | None,
+        near: Near,
+        columns: list[str],
+        out: str,
+        force: bool,
+    ) -> None: ...
     def sweep_share(
         self,
         set: list[str],
@@ -60,7 +72,7 @@ class Core:
         out: str,
     ) -> None: ...
     @staticmethod
-    def merge(shards: list[str], out: str) -> None: ...
+    def merge(shards: list[str], out: str, force: bool = False) -> None: ...
     def verify(self, set: list[str], resolution: int, k: float, near: Near, order: int) -> str: ...
     def pattern(
         self,

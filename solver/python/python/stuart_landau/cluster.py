@@ -7,19 +7,29 @@ from __future__ import annotations
 
 import csv
 import pickle
+import shutil
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
 from ._core import Core
 
 
-def run(client: Any, model: Any, assignment: tuple[Any, ...], out: Path, tasks: int, cpus: int) -> None:
-    """Submits the shares of a sweep, waits for them, and puts them together."""
+def run(
+    client: Any, model: Any, assignment: tuple[Any, ...], out: Path, tasks: int, cpus: int, force: bool
+) -> None:
+    """Submits the shares of a sweep, waits for them, and puts them together.
+
+    Beside `out` stand meanwhile the shares, and a folder with the assignment and what the tasks print; the folder is new,
+    so that no file of another kind is replaced.
+    """
     from hyperqueue import Job
     from hyperqueue.task.task import ResourceRequest
 
-    file = out.with_name(out.name + ".assignment")
+    model._core.check_table(*assignment, str(out), force)
+    folder = Path(tempfile.mkdtemp(prefix=f"{out.name}.cluster-", dir=out.parent))
+    file = folder / "assignment"
     file.write_bytes(pickle.dumps((model, assignment)))
     shards = [out.with_name(f"{out.name}.shard-{index}") for index in range(1, tasks + 1)]
     job = Job()
@@ -29,14 +39,14 @@ def run(client: Any, model: Any, assignment: tuple[Any, ...], out: Path, tasks: 
             env={"RAYON_NUM_THREADS": str(cpus)},
             cwd=str(out.parent),
             stdout=None,
-            stderr=str(shard) + ".err",
+            stderr=str(folder / f"{index}.err"),
             resources=ResourceRequest(cpus=cpus),
         )
     client.wait_for_jobs([client.submit(job)])
-    Core.merge([str(shard) for shard in shards], str(out))
-    said = [shard.with_name(shard.name + ".err") for shard in shards]
-    for leftover in (file, *shards, *said):
-        leftover.unlink(missing_ok=True)
+    Core.merge([str(shard) for shard in shards], str(out), force)
+    for shard in shards:
+        shard.unlink(missing_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def rows(table: Path, axes: int, columns: list[str]) -> list[dict[str, Any]]:

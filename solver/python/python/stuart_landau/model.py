@@ -192,12 +192,14 @@ class Model:
         cluster: Any = None,
         tasks: int = 16,
         cpus: int = 1,
+        force: bool = False,
         set: Mapping[str, Any] | None = None,
         **parameters: Any,
     ) -> Sweep:
         """Landau points over the product of all keywords that are sequences; the first one is followed.
 
-        With `out`, a CSV file, an interrupted sweep leaves a journal beside it and goes on from there. With `cluster`, a
+        With `out`, a CSV file, an interrupted sweep leaves a journal beside it and goes on from there; a file that is no
+        table of this sweep is replaced with `force` alone. With `cluster`, a
         `hyperqueue.Client`, the sweep runs there in `tasks` shares of `cpus` cores, through files beside `out`.
         `columns` are outputs at the equilibrium, and expressions in the base state: `"T at upper"`, `"integral(n)"`.
         """
@@ -216,11 +218,11 @@ class Model:
                 raise InputError("a sweep on a cluster needs out, a file that all workers see")
             assignment = (self._set(None, fixed), M, axes, number, _near(near), list(columns))
             path = Path(target).resolve()
-            distributed.run(cluster, self, assignment, path, tasks, cpus)
+            distributed.run(cluster, self, assignment, path, tasks, cpus, force)
             rows = distributed.rows(path, len(axes), list(columns))
         else:
             rows = json.loads(
-                self._core.sweep(self._set(None, fixed), M, axes, number, _near(near), list(columns), target)
+                self._core.sweep(self._set(None, fixed), M, axes, number, _near(near), list(columns), target, force)
             )
         varying = [name for name, _ in axes]
         defaults = {name: info["default"] for name, info in self.parameters.items() if name not in varying}

@@ -1,10 +1,9 @@
 //! What a table's columns are, in a file beside it: CSV on the Web (W3C 2015), `NAME.csv-metadata.json`.
 
-use landau_solver::error::Result;
-use landau_solver::file::write_whole;
-use landau_solver::study::row;
-use serde_json::{Map, Value, json};
-use std::path::Path;
+use landau_solver::file::seal::{BLANK, sealed};
+use landau_solver::study::row::{self, Table};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
 
 /// The name of the description of a table.
 pub fn beside(csv: &str) -> String {
@@ -64,42 +63,41 @@ pub fn describe(
     format!("{table:#}\n")
 }
 
-/// The description of a sweep's table: its columns, and what the numbers were computed from, `title` among them.
-fn describe_sweep<'h>(
-    csv: &str,
-    header: impl Iterator<Item = &'h str>,
-    facts: &Map<String, Value>,
-) -> String {
-    let columns: Vec<(&str, Datatype)> = header
-        .map(|name| match name {
-            "bifurcation" | "status" => (name, Datatype::Text),
+/// Key of what a table was computed from, for machines.
+pub const SWEEP: &str = "landau:sweep";
+/// Key of the hash of a table.
+pub const TABLE: &str = "landau:table";
+
+/// Where the description of a table stands.
+pub fn path_beside(table: &Path) -> PathBuf {
+    let mut name = table.file_name().unwrap_or_default().to_os_string();
+    name.push("-metadata.json");
+    table.with_file_name(name)
+}
+
+/// The description of a sweep's table, sealed: its columns, and what the numbers were computed from. `hash` is that of the
+/// table.
+pub fn describe_sweep(path: &Path, table: &Table, hash: &str) -> Vec<u8> {
+    let csv = path.file_name().unwrap_or_default().to_string_lossy();
+    let columns: Vec<(&str, Datatype)> = table
+        .header
+        .iter()
+        .map(|name| match name.as_str() {
+            "bifurcation" | "status" => (name.as_str(), Datatype::Text),
             name => (name, Datatype::Number),
         })
         .collect();
-    let title = facts
-        .get("title")
-        .and_then(Value::as_str)
-        .unwrap_or_default();
-    let facts: Vec<(String, Value)> = facts
-        .iter()
-        .filter(|(name, _)| *name != "title")
+    let title = table.facts.get("title").and_then(Value::as_str);
+    let facts = table.facts.iter().filter(|(name, _)| *name != "title");
+    let mut facts: Vec<(String, Value)> = facts
         .map(|(name, value)| (name.clone(), value.clone()))
         .collect();
-    describe(csv, title, &columns, &facts)
-}
-
-/// Writes the description of a sweep's table beside it.
-///
-/// # Errors
-/// A folder that cannot be written to.
-pub fn write_beside<'h>(
-    table: &Path,
-    header: impl Iterator<Item = &'h str>,
-    facts: &Map<String, Value>,
-) -> Result<()> {
-    let name = table.file_name().unwrap_or_default().to_string_lossy();
-    let path = table.with_file_name(beside(&name));
-    write_whole(&path, describe_sweep(&name, header, facts).as_bytes())
+    facts.extend([
+        ("sweep".to_owned(), json!(table.sweep)),
+        ("table".to_owned(), json!(hash)),
+        ("seal".to_owned(), json!(BLANK)),
+    ]);
+    sealed(describe(&csv, title.unwrap_or_default(), &columns, &facts).into_bytes())
 }
 
 /// What a column holds.

@@ -6,9 +6,11 @@ pub mod names;
 mod netcdf;
 mod npz;
 pub mod plane;
+pub mod table;
 mod vtk;
 
 use landau_solver::error::{Error, Result};
+use landau_solver::file::seal::sealed;
 use landau_solver::file::write_whole;
 use std::path::Path;
 
@@ -68,7 +70,7 @@ pub const UNITS: &str = "1";
 pub const FORMATS: [&str; 3] = ["npz", "nc", "vtk"];
 
 impl Dataset {
-    /// Writes the file whole or not at all, in the format of its extension.
+    /// Writes the file whole or not at all, sealed, in the format of its extension.
     ///
     /// # Errors
     /// An extension that is none of [`FORMATS`], a folder that does not exist.
@@ -89,6 +91,6 @@ impl Dataset {
         let bytes = bytes.map_err(|reason| {
             Error::computation(format!("{} cannot be encoded: {reason}", path.display()))
         })?;
-        write_whole(path, &bytes)
+        write_whole(path, &sealed(bytes))
     }
 }

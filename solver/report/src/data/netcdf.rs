@@ -1,6 +1,7 @@
 //! NetCDF-3 with CF-like coordinates, as xarray reads it.
 
 use super::{CONVENTIONS, Dataset, Fact, UNITS};
+use landau_solver::file::seal::BLANK;
 use netcdf3::{DataSet, FileWriter, Version};
 use std::io::{Read, Seek, SeekFrom};
 
@@ -16,6 +17,8 @@ pub(super) fn encode(data: &Dataset) -> Result<Vec<u8>, String> {
     }
     let conventions = set.add_global_attr_string("Conventions", CONVENTIONS);
     conventions.map_err(|e| text(&e))?;
+    let seal = set.add_global_attr_string("seal", BLANK);
+    seal.map_err(|e| text(&e))?;
     for axis in &data.axes {
         let added = set.add_fixed_dim(&axis.name, axis.values.len());
         added.map_err(|e| text(&e))?;

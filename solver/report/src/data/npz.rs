@@ -1,6 +1,8 @@
-//! npz: one npy file an axis and an array; attributes as JSON text in the bytes of `attributes`.
+//! npz: one npy file an axis and an array; attributes as JSON text in the bytes of `attributes`. The seal is
+//! the comment of the archive.
 
 use super::{Dataset, Fact};
+use landau_solver::file::seal::BLANK;
 use npyz::WriterBuilder;
 use std::io::{Cursor, Write};
 use zip::write::{SimpleFileOptions, ZipWriter};
@@ -41,6 +43,7 @@ pub(super) fn encode(data: &Dataset) -> Result<Vec<u8>, String> {
         .collect();
     let text = serde_json::to_string(&attributes).map_err(|e| e.to_string())?;
     add("attributes", npy(&[text.len() as u64], text.as_bytes())?)?;
+    archive.set_comment(BLANK).map_err(|e| e.to_string())?;
     let finished = archive.finish().map_err(|e| e.to_string())?;
     Ok(finished.into_inner())
 }

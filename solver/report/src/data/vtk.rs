@@ -1,6 +1,7 @@
 //! Legacy VTK, a rectilinear grid as ParaView opens it (VTK file formats, version 3.0).
 
 use super::{Dataset, Fact};
+use landau_solver::file::seal::BLANK;
 use std::fmt::Write;
 
 /// The last axis is x, the one before it y. What is over y alone, and what the numbers were computed from, is field data.
@@ -12,9 +13,9 @@ pub(super) fn encode(data: &Dataset) -> Result<Vec<u8>, String> {
         Fact::Text(text) => Some(deunicode::deunicode(text)),
         Fact::Number(_) => None,
     });
-    // The title is one line of at most 256 bytes.
+    // The title is one line of at most 256 bytes; the seal stands at its end.
     let mut text = format!(
-        "# vtk DataFile Version 3.0\n{:.200}\nASCII\nDATASET RECTILINEAR_GRID\n",
+        "# vtk DataFile Version 3.0\n{:.200} {BLANK}\nASCII\nDATASET RECTILINEAR_GRID\n",
         title.unwrap_or_default().replace('\n', " "),
     );
     let profiles: Vec<_> = data

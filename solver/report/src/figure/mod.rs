@@ -16,6 +16,7 @@ pub use pattern::{Part, View, pattern_lines, pattern_pair};
 pub use plane::{Plane, planes};
 
 use landau_solver::error::{Error, Result};
+use landau_solver::file::seal::{BLANK, sealed};
 use landau_solver::file::write_whole;
 use std::path::Path;
 
@@ -51,14 +52,19 @@ impl Drawing {
         drawn.map_err(|e| Error::computation(format!("the picture cannot be made: {e}")))
     }
 
-    /// In the format that the path asks for.
+    /// In the format that the path asks for, sealed.
     ///
     /// # Errors
     /// A path that is no .svg or .png, or cannot be written.
     pub fn write(&self, path: &Path) -> Result<()> {
         match path.extension().and_then(|e| e.to_str()) {
-            Some("svg") => write_whole(path, self.svg().as_bytes()),
-            Some("png") => write_whole(path, &self.png()?),
+            Some("svg") => {
+                let svg = self.svg();
+                let body = svg.trim_end().trim_end_matches("</svg>");
+                let text = format!("{body}<!-- {BLANK} -->\n</svg>\n");
+                write_whole(path, &sealed(text.into_bytes()))
+            }
+            Some("png") => write_whole(path, &raster::sealed(self.png()?)),
             _ => Err(not_a_picture(path)),
         }
     }

@@ -2,6 +2,7 @@
 //!
 //! The plotting library's own rasteriser fills every outline of a path by itself, and a region with a hole whole.
 
+use landau_solver::file::seal::{self, BLANK};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb::Database};
 use std::sync::{Arc, LazyLock};
@@ -36,9 +37,35 @@ pub(super) fn png(svg: &str) -> Result<Vec<u8>, String> {
     pixels.encode_png().map_err(|e| e.to_string())
 }
 
+/// Bytes of the chunk that ends a PNG.
+const END: usize = 12;
+
+/// A PNG with a seal in a chunk of text before its end.
+pub(super) fn sealed(png: Vec<u8>) -> Vec<u8> {
+    let with = |text: &str| {
+        let (body, end) = png.split_at(png.len().saturating_sub(END));
+        [body, &text_chunk(text), end].concat()
+    };
+    match seal::digits(&with(BLANK)) {
+        // The seal does not count the digits, nor the checksum of the chunk, which follows them.
+        Some(digits) => with(&BLANK.replace("0000000000000000", &digits)),
+        None => png,
+    }
+}
+
+/// A chunk `tEXt` with the keyword `Software`: length, type, data, checksum over type and data.
+fn text_chunk(text: &str) -> Vec<u8> {
+    let data = [b"Software\0Landau ", text.as_bytes()].concat();
+    let body = [b"tEXt", data.as_slice()].concat();
+    let length = (data.len() as u32).to_be_bytes();
+    let checksum = crc32fast::hash(&body).to_be_bytes();
+    [&length, body.as_slice(), &checksum].concat()
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Pixmap, SCALE, png};
+    use super::{Pixmap, SCALE, png, sealed};
+    use landau_solver::file::seal::is_sealed;
 
     /// A hole in a region stays a hole, and text is drawn.
     #[test]
@@ -57,5 +84,19 @@ mod tests {
         assert_eq!(at(20.0, 20.0), Some((255, 255, 255)));
         let dark = |p: &resvg::tiny_skia::PremultipliedColorU8| p.red() < 50 && p.blue() < 50;
         assert!(drawn.pixels().iter().any(dark));
+    }
+
+    /// The sealed picture is a PNG with the same pixels, and any other change is seen.
+    #[test]
+    fn a_sealed_picture() {
+        let svg = r#"<svg xmlns="http://www.w3.org/2000/svg" width="6" height="4"/>"#;
+        let plain = png(svg).expect("a picture");
+        let whole = sealed(plain.clone());
+        assert!(is_sealed(&whole) && !is_sealed(&plain));
+        let pixels = |png: &[u8]| Pixmap::decode_png(png).expect("a PNG").take();
+        assert_eq!(pixels(&whole), pixels(&plain));
+        let mut changed = whole;
+        changed[20] ^= 1;
+        assert!(!is_sealed(&changed));
     }
 }

@@ -259,6 +259,7 @@ impl Table {
     pub fn csv(&self) -> String {
         let mut header = self.header.clone();
         header.extend(self.words.iter().map(|(name, _)| name.clone()));
+        let header: Vec<String> = header.iter().map(|name| quoted(name)).collect();
         let mut text = header.join(",") + "\n";
         for (index, row) in self.rows.iter().enumerate() {
             let number = |v: &f64| match v.is_finite() {
@@ -270,7 +271,7 @@ impl Table {
                 .words
                 .iter()
                 .filter_map(|(_, column)| column.get(index));
-            cells.extend(words.map(|word| quoted(word)));
+            cells.extend(words.map(|word| text_cell(word)));
             text += &(cells.join(",") + "\n");
         }
         text
@@ -279,9 +280,18 @@ impl Table {
 
 /// A word as CSV has it.
 fn quoted(word: &str) -> String {
-    match word.contains([',', '"', '\n']) {
+    match word.contains([',', '"', '\n', '\r']) {
         true => format!("\"{}\"", word.replace('"', "\"\"")),
         false => word.to_owned(),
+    }
+}
+
+/// A word as CSV has it; an apostrophe before one that a spreadsheet would compute as a formula.
+fn text_cell(word: &str) -> String {
+    if word.starts_with(['=', '+', '-', '@', '\t', '\r']) {
+        quoted(&format!("'{word}"))
+    } else {
+        quoted(word)
     }
 }
 
@@ -295,7 +305,20 @@ fn with_gaps<'d, D: Deserializer<'d>>(input: D) -> Result<Vec<Vec<f64>>, D::Erro
 #[cfg(test)]
 mod tests {
     use super::super::study::Printed;
-    use super::{Number, Table};
+    use super::{Number, Table, text_cell};
+
+    #[test]
+    fn a_label_is_no_formula() {
+        for (word, cell) in [
+            ("=1+1", "'=1+1"),
+            ("-x", "'-x"),
+            ("@sum(a,b)", "\"'@sum(a,b)\""),
+            ("S = 100", "S = 100"),
+            ("a,b", "\"a,b\""),
+        ] {
+            assert_eq!(text_cell(word), cell);
+        }
+    }
 
     #[test]
     fn differences_in_units_of_the_last_printed_digit() {

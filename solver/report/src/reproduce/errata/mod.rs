@@ -15,6 +15,7 @@ use landau_codegen::errata::{Comparison, Formula, Language, Notation, Subject, c
 use landau_codegen::formula::{Arrangement, Formula as Tree};
 use landau_codegen::model::End;
 use landau_solver::error::{Error, Result};
+use landau_solver::file::{TEXT_LIMIT, read_text};
 use serde::Deserialize;
 use std::path::Path;
 use verdict::{Change, File};
@@ -182,8 +183,7 @@ impl Errata {
     /// # Errors
     /// A file that is missing, or says what such a file does not (with line and column).
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|e| Error::input(format!("{} cannot be read: {e}", path.display())))?;
+        let text = read_text(path, TEXT_LIMIT)?;
         toml::from_str(&text).map_err(|e| Error::input(format!("{}: {e}", path.display())))
     }
 

@@ -10,6 +10,7 @@ pub use parts::at_each;
 pub use printed::Printed;
 
 use landau_solver::error::{Error, Result};
+use landau_solver::file::{TEXT_LIMIT, read_text};
 use landau_solver::study::row::Column;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -389,8 +390,7 @@ impl Study {
     /// # Errors
     /// A file that is missing, or says what a study file does not (with line and column).
     pub fn read(path: &Path) -> Result<Self> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|e| Error::input(format!("{} cannot be read: {e}", path.display())))?;
+        let text = read_text(path, TEXT_LIMIT)?;
         let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
         let mut study: Study =
             toml::from_str(&text).map_err(|e| wrong(place::refined(&text, &e)))?;
@@ -404,7 +404,7 @@ impl Study {
         study.files.push((name(path), text));
         if let Some(errata) = &study.errata {
             let beside = path.parent().unwrap_or(Path::new("")).join(errata);
-            if let Ok(text) = std::fs::read_to_string(&beside) {
+            if let Ok(text) = read_text(&beside, TEXT_LIMIT) {
                 study.files.push((name(&beside), text));
             }
         }

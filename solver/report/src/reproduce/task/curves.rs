@@ -9,6 +9,7 @@ use super::points::{critical_point, question};
 use super::rows::rows;
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
+use landau_solver::file::{TEXT_LIMIT, read_text};
 use landau_solver::study::Silent;
 use landau_solver::study::critical::{self, Critical};
 use landau_solver::study::row::{Column, NUMBERS, Row, column};
@@ -87,8 +88,7 @@ pub(super) struct Wanted<'a> {
 fn reference(shop: &Workshop, asked: &Reference) -> Result<Vec<(f64, f64)>> {
     let path = shop.home.join(&asked.file);
     let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
-    let text =
-        std::fs::read_to_string(&path).map_err(|e| wrong(format!("it cannot be read: {e}")))?;
+    let text = read_text(&path, TEXT_LIMIT)?;
     let point = |(index, line): (usize, &str)| {
         let mut cells = line.split(',').map(|cell| cell.trim().parse::<f64>());
         match (cells.next(), cells.next(), cells.next()) {

@@ -1,0 +1,68 @@
+//! The files that a command is going to write, looked at before it computes anything.
+
+use landau_report::data::FORMATS;
+use landau_report::figure::is_picture;
+use landau_solver::error::{Error, Result};
+use landau_solver::file::{Overwrite, check_replaceable};
+use std::path::{Path, PathBuf};
+
+/// Refuses files that a command must not write: two under one name, and those that Landau did not write, unless
+/// `overwrite` allows it.
+///
+/// # Errors
+/// Names the file, and says what to do.
+pub fn check<'p>(paths: impl IntoIterator<Item = &'p Path>, overwrite: Overwrite) -> Result<()> {
+    let mut targets: Vec<PathBuf> = Vec::new();
+    for path in paths {
+        let target = check_replaceable(path, overwrite)?;
+        if targets.contains(&target) {
+            return Err(Error::input(format!(
+                "{} is named twice: one file would replace the other",
+                path.display()
+            )));
+        }
+        targets.push(target);
+    }
+    Ok(())
+}
+
+/// Refuses a picture in a format that is not written.
+///
+/// # Errors
+/// A path that is no .svg or .png.
+pub fn check_picture(path: Option<&Path>) -> Result<()> {
+    match path {
+        Some(path) if !is_picture(path) => Err(Error::input(format!(
+            "--plot {}: it accepts .svg, .png",
+            path.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses data in a format that a command does not write.
+///
+/// # Errors
+/// A path whose extension is none of `extensions`.
+pub fn check_data(paths: &[PathBuf], extensions: &[&str]) -> Result<()> {
+    let has_format = |path: &&PathBuf| {
+        let extension = path.extension().and_then(|e| e.to_str());
+        extension.is_some_and(|e| extensions.contains(&e))
+    };
+    match paths.iter().find(|path| !has_format(path)) {
+        Some(path) => Err(Error::input(format!(
+            "--out {}: it accepts .{}",
+            path.display(),
+            extensions.join(", .")
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// What data over one coordinate are written as.
+pub const LINE_FORMATS: [&str; 2] = ["npz", "nc"];
+
+/// What a pattern is written as: pictures, then data.
+pub fn plane_formats() -> Vec<&'static str> {
+    ["svg", "png"].into_iter().chain(FORMATS).collect()
+}
