@@ -222,9 +222,9 @@ fn words_of_sweep(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
             let value = bytes.strip_prefix(option.as_bytes());
             value.is_some_and(|value| value.starts_with(b"="))
         };
-        if is_value || removed.iter().any(|option| assigns(&option)) {
+        if is_value || removed.iter().any(assigns) {
             is_value = false;
-        } else if removed.iter().any(|option| names(&option)) {
+        } else if removed.iter().any(names) {
             is_value = true;
         } else {
             kept.push(word);

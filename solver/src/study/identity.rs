@@ -164,11 +164,9 @@ fn quoted(text: &str) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::{AxisIdentity, SweepIdentity};
-    use std::collections::BTreeMap;
-
-    fn identity() -> SweepIdentity {
+impl SweepIdentity {
+    /// Some sweep.
+    pub fn example() -> Self {
         SweepIdentity {
             model: "m".to_owned(),
             sources: "0".to_owned(),
@@ -188,13 +186,19 @@ mod tests {
             build: "a".to_owned(),
         }
     }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SweepIdentity;
+    use std::collections::BTreeMap;
 
     #[test]
     fn the_first_difference_is_named() {
-        let here = identity();
-        assert_eq!(here.difference(&identity()), None);
+        let here = SweepIdentity::example();
+        assert_eq!(here.difference(&SweepIdentity::example()), None);
         let said = |change: &dyn Fn(&mut SweepIdentity)| {
-            let mut there = identity();
+            let mut there = SweepIdentity::example();
             change(&mut there);
             here.difference(&there).expect("a difference")
         };
@@ -215,10 +219,10 @@ mod tests {
 
     #[test]
     fn a_table_does_not_belong_to_a_build() {
-        let mut there = identity();
+        let mut there = SweepIdentity::example();
         there.build = "b".to_owned();
-        assert!(identity().is_same_table(&there));
+        assert!(SweepIdentity::example().is_same_table(&there));
         there.k = Some(1.0);
-        assert!(!identity().is_same_table(&there));
+        assert!(!SweepIdentity::example().is_same_table(&there));
     }
 }

@@ -270,22 +270,13 @@ mod tests {
     use crate::file::Overwrite;
     use crate::study::identity::SweepIdentity;
     use crate::study::row::Row;
-    use std::collections::BTreeMap;
     use std::fs;
     use std::path::Path;
 
     fn identity(resolution: usize) -> SweepIdentity {
         SweepIdentity {
-            model: "m".to_owned(),
-            sources: String::new(),
-            axes: Vec::new(),
-            parameters: BTreeMap::new(),
             resolution,
-            k: None,
-            near: None,
-            columns: Vec::new(),
-            version: String::new(),
-            build: String::new(),
+            ..SweepIdentity::example()
         }
     }
 

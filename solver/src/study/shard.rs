@@ -269,7 +269,8 @@ fn missing(there: impl Iterator<Item = usize>, chunks: usize, count: usize) -> S
 
 #[cfg(test)]
 mod tests {
-    use super::{Share, missing};
+    use super::{Map, Shard, Share, SweepIdentity, VERSION, merge, missing};
+    use std::collections::BTreeMap;
 
     /// Every chunk once, whatever the number of shares.
     #[test]
@@ -301,6 +302,43 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Shares by different builds of one version are no parts of one table, and the message says so.
+    #[test]
+    fn shares_by_different_builds() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let paths = ["a", "b"].map(|name| folder.path().join(name));
+        for (index, path) in paths.iter().enumerate() {
+            let mut shard = Shard {
+                landau_shard: VERSION,
+                sweep: SweepIdentity::example(),
+                header: vec!["k".to_owned()],
+                facts: Map::new(),
+                chunks: 2,
+                share: Share {
+                    index: index + 1,
+                    count: 2,
+                },
+                rows: BTreeMap::from([(index, Vec::new())]),
+                sum: String::new(),
+            };
+            shard.sweep.build = format!("build{index}");
+            shard.sum = shard.checksum().expect("a checksum");
+            let text = serde_json::to_string(&shard).expect("JSON");
+            std::fs::write(path, text).expect("written");
+        }
+        let error = merge(&paths).expect_err("refused").to_string();
+        assert!(
+            error.contains("the build of Landau is build0 here and build1 there"),
+            "{error}"
+        );
+        assert!(
+            merge(&paths[..1])
+                .expect_err("a gap")
+                .to_string()
+                .contains("2/2")
+        );
     }
 
     #[test]
