@@ -13,6 +13,7 @@ fn read(text: String) {
     if let Err(mistakes) = generate(&Sources {
         spec,
         laws: BTreeMap::new(),
+        unreadable: BTreeMap::new(),
     }) {
         assert!(!mistakes.list.is_empty());
         assert!(mistakes.render().contains("error"));
@@ -126,7 +127,11 @@ fn hostile_specs_end_quickly() {
         path: "circle.model".into(),
         text,
     };
-    let said = match generate(&Sources { spec, laws }) {
+    let said = match generate(&Sources {
+        spec,
+        laws,
+        unreadable: BTreeMap::new(),
+    }) {
         Err(mistakes) => mistakes.render(),
         Ok(_) => panic!("a circle of laws was accepted"),
     };

@@ -1,13 +1,17 @@
 //! The driver for a build script: every `.model` file of a folder becomes a Rust module.
 
 use crate::diagnostic::{Diagnostics, SourceFile};
-use crate::emit;
+use crate::emit::{self, name::Identifiers};
 use crate::generate::generate;
-use crate::sources::Sources;
+use crate::sources::{LARGEST_FILE, Sources};
 use std::collections::BTreeMap;
 use std::fmt::Write;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
+
+/// Paths of open descriptors: what they lead to has been opened already, so that reading does not wait for it.
+const DESCRIPTORS: [&str; 3] = ["/dev/stdin", "/dev/fd", "/proc/self/fd"];
 
 /// Generates `$OUT_DIR/models.rs` from `models/*.model` and `laws/*.law` of the crate being built.
 ///
@@ -39,15 +43,17 @@ fn directories() -> Result<(PathBuf, PathBuf), String> {
 /// # Errors
 /// The mistakes of all specs, as text.
 pub fn generate_folder(root: &Path, out: &Path) -> Result<(), String> {
-    let laws = read_laws(&root.join("laws")).map_err(|e| e.to_string())?;
+    let (laws, unreadable) = read_laws(&root.join("laws")).map_err(|e| e.to_string())?;
     let (mut index, mut list, mut errors) = (String::new(), String::new(), String::new());
     let mut names: BTreeMap<String, String> = BTreeMap::new();
+    let mut identifiers = Identifiers::default();
     for path in files(&root.join("models"), "model").map_err(|e| e.to_string())? {
         let spec = read(&path, root).map_err(|e| e.to_string())?;
         let file = spec.path.clone();
         let (name, title, code) = match generate_module(Sources {
             spec,
             laws: laws.clone(),
+            unreadable: unreadable.clone(),
         }) {
             Ok(module) => module,
             Err(mistakes) => {
@@ -59,6 +65,7 @@ pub fn generate_folder(root: &Path, out: &Path) -> Result<(), String> {
             let _ = writeln!(errors, "the model `{name}` stands in {other} and in {file}");
             continue;
         }
+        let name = identifiers.module(&name);
         fs::write(out.join(format!("{name}.rs")), code).map_err(|e| e.to_string())?;
         let _ = writeln!(
             index,
@@ -95,44 +102,57 @@ pub fn generate_module(sources: Sources) -> Result<(String, String, String), Dia
     ))
 }
 
-/// The law files of a folder by name; none where there is no such folder.
-pub fn read_laws(folder: &Path) -> io::Result<BTreeMap<String, SourceFile>> {
-    let mut laws = BTreeMap::new();
+/// The law files of a folder by name, and those that cannot be read, with the reason; none where there is no
+/// such folder.
+///
+/// # Errors
+/// A folder that cannot be listed.
+pub fn read_laws(
+    folder: &Path,
+) -> io::Result<(BTreeMap<String, SourceFile>, BTreeMap<String, String>)> {
+    let (mut laws, mut unreadable) = (BTreeMap::new(), BTreeMap::new());
     if !folder.is_dir() {
-        return Ok(laws);
+        return Ok((laws, unreadable));
     }
     let root = folder.parent().unwrap_or(folder);
     for path in files(folder, "law")? {
-        let name = path
-            .file_stem()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned();
-        laws.insert(name, read(&path, root)?);
+        let stem = path.file_stem().unwrap_or_default();
+        let name = stem.to_string_lossy().into_owned();
+        match read(&path, root) {
+            Ok(file) => drop(laws.insert(name, file)),
+            Err(reason) => drop(unreadable.insert(name, format!("{}: {reason}", path.display()))),
+        }
     }
-    Ok(laws)
+    Ok((laws, unreadable))
 }
 
 /// A spec with the law files beside it: in `laws/` next to it, or next to its folder.
+///
+/// # Errors
+/// A spec that is no text of at most 1 MiB in a regular file, or behind an open descriptor such as `/dev/stdin`.
 pub fn read_sources(path: &Path) -> io::Result<Sources> {
-    let text = fs::read_to_string(path)?;
     let spec = SourceFile {
         path: path.display().to_string(),
-        text,
+        text: read_text(path)?,
     };
     let folder = path.parent().unwrap_or(Path::new("."));
-    let mut laws = read_laws(&folder.join("laws"))?;
-    if laws.is_empty() {
-        laws = read_laws(&folder.join("..").join("laws"))?;
+    let (mut laws, mut unreadable) = read_laws(&folder.join("laws"))?;
+    if laws.is_empty() && unreadable.is_empty() {
+        (laws, unreadable) = read_laws(&folder.join("..").join("laws"))?;
     }
-    Ok(Sources { spec, laws })
+    Ok(Sources {
+        spec,
+        laws,
+        unreadable,
+    })
 }
 
+/// The regular files of a folder whose names end so.
 fn files(folder: &Path, extension: &str) -> io::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
-        if path.extension().is_some_and(|e| e == extension) {
+        if path.extension().is_some_and(|e| e == extension) && path.is_file() {
             found.push(path);
         }
     }
@@ -141,10 +161,29 @@ fn files(folder: &Path, extension: &str) -> io::Result<Vec<PathBuf>> {
 }
 
 fn read(path: &Path, root: &Path) -> io::Result<SourceFile> {
-    let text = fs::read_to_string(path)?;
+    let text = read_text(path)?;
     let shown = path.strip_prefix(root).unwrap_or(path);
     Ok(SourceFile {
         path: shown.display().to_string(),
         text,
+    })
+}
+
+/// The text of a spec or a law file; reads no more of it than such a file may have.
+fn read_text(path: &Path) -> io::Result<String> {
+    let refuse = |reason: String| io::Error::new(io::ErrorKind::InvalidData, reason);
+    let is_open = DESCRIPTORS.iter().any(|place| path.starts_with(place));
+    if !is_open && !fs::metadata(path)?.is_file() {
+        return Err(refuse("it is not a regular file".into()));
+    }
+    let mut bytes = Vec::new();
+    let most = LARGEST_FILE as u64 + 1;
+    fs::File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    if bytes.len() > LARGEST_FILE {
+        return Err(refuse(format!("it has more than {LARGEST_FILE} bytes")));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let place = error.utf8_error().valid_up_to();
+        refuse(format!("it is not UTF-8 text (byte {place})"))
     })
 }

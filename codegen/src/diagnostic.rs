@@ -7,8 +7,10 @@ pub use landau_contract::nearest;
 
 /// Mistakes that are told one by one.
 const MOST_TOLD: usize = 20;
-/// Longer texts and source lines are cut in the middle.
+/// Longer texts are cut in the middle.
 const LONGEST_TEXT: usize = 400;
+/// Longer source lines are shown around the caret alone.
+const LONGEST_LINE: usize = 200;
 /// What is kept of a long source line on either side of the caret.
 const WINDOW: usize = 60;
 
@@ -110,7 +112,8 @@ impl Diagnostics {
         let mut own = range.start - start..range.end - start;
         let mut path = file.path.clone();
         let mut shown = lines.to_owned();
-        if lines.len() > LONGEST_TEXT {
+        let longest = lines.lines().map(str::len).max().unwrap_or(0);
+        if longest > LONGEST_LINE || lines.len() > LONGEST_TEXT {
             // A place of its own in the path: the excerpt would have other columns.
             let column = file.text[start..range.start].chars().count() + 1;
             path = format!("{path}:{number}:{column}, in an excerpt");
@@ -138,7 +141,7 @@ impl Diagnostics {
 }
 
 /// A text of readable length, its middle left out if need be.
-fn shortened(text: &str) -> String {
+pub fn shortened(text: &str) -> String {
     if text.len() <= LONGEST_TEXT {
         return text.to_owned();
     }

@@ -12,10 +12,12 @@ pub enum Error {
 
     /// No base state was found.
     #[error(
-        "Newton's method for the base state failed {trouble} at {parameters}; try parameters nearer the defaults, or \
+        "{spec}: Newton's method for the base state failed {trouble} at {parameters}; try parameters nearer the defaults, or \
          another `guess`"
     )]
     BaseState {
+        /// Where the spec speaks of it.
+        spec: String,
         /// Where, and how.
         trouble: String,
         /// With their values.

@@ -40,8 +40,9 @@ impl Parameters {
                 let near = nearest(name, names.iter().copied());
                 let near = near.map_or(String::new(), |n| format!("; did you mean `{n}`?"));
                 Error::input(format!(
-                    "the model `{}` has no parameter `{name}`: it has {}{near}",
+                    "the model `{}` has no parameter `{}`: it has {}{near}",
                     structure.name,
+                    words::quoted(name),
                     if names.is_empty() {
                         "none".into()
                     } else {
@@ -57,14 +58,19 @@ impl Parameters {
     /// Values outside the declared range.
     pub fn set(&mut self, structure: &Structure, parameter: ParameterId, value: f64) -> Result<()> {
         let info = &structure.parameters[parameter];
-        let whole = info.choices.is_empty() || value.fract() == 0.0;
-        if !value.is_finite() || value < info.lower || value > info.upper || !whole {
-            return Err(Error::input(format!(
-                "{} = {value} is out of range: `{}` accepts {}",
+        let refuse = |trouble: &str| {
+            Err(Error::input(format!(
+                "{} = {value} is {trouble}: `{}` accepts {}",
                 info.name,
                 info.name,
                 accepts(structure, parameter)
-            )));
+            )))
+        };
+        if !value.is_finite() || value < info.lower || value > info.upper {
+            return refuse("out of range");
+        }
+        if !info.is_continuous() && value.fract() != 0.0 {
+            return refuse("not a whole number");
         }
         self.values[parameter] = value;
         self.automatic[parameter] = false;
@@ -88,7 +94,8 @@ impl Parameters {
         }
         let value: f64 = text.parse().map_err(|_| {
             Error::input(format!(
-                "{name} = {text} is not a value: `{name}` accepts {}",
+                "{name} = {} is not a value: `{name}` accepts {}",
+                words::quoted(text),
                 accepts(structure, parameter)
             ))
         })?;
@@ -149,11 +156,16 @@ pub fn accepts(structure: &Structure, parameter: ParameterId) -> String {
     let mut text = if !info.choices.is_empty() {
         format!("one of {}", info.choices.join(", "))
     } else {
+        let number = if info.whole {
+            "a whole number"
+        } else {
+            "a number"
+        };
         match (info.lower.is_finite(), info.upper.is_finite()) {
-            (true, true) => format!("a number in {}..{}", info.lower, info.upper),
-            (true, false) => format!("a number from {} on", info.lower),
-            (false, true) => format!("a number up to {}", info.upper),
-            (false, false) => "a number".into(),
+            (true, true) => format!("{number} in {}..{}", info.lower, info.upper),
+            (true, false) => format!("{number} from {} on", info.lower),
+            (false, true) => format!("{number} up to {}", info.upper),
+            (false, false) => number.into(),
         }
     };
     if info.automatic {

@@ -77,6 +77,19 @@ pub fn amplitude_equation(c0: C64, c2: C64) -> String {
     text
 }
 
+/// Characters of what a message quotes.
+const LONGEST_QUOTATION: usize = 100;
+
+/// What somebody gave, as a message quotes it: on one line, cut where it is long.
+pub fn quoted(text: &str) -> String {
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    let mut line: String = text.chars().take(LONGEST_QUOTATION).map(plain).collect();
+    if text.chars().nth(LONGEST_QUOTATION).is_some() {
+        line.push('…');
+    }
+    line
+}
+
 #[cfg(test)]
 mod tests {
     use super::{short, with_error};

@@ -58,8 +58,23 @@ pub struct Structure {
     pub outputs: Vec<OutputInfo>,
     /// What the spec calls typical.
     pub typical: Option<TypicalInfo>,
+    /// Where the spec says what, for messages.
+    pub lines: LinesInfo,
     /// Operations of all kernels as written, and after common subexpressions are shared.
     pub operations: Vec<usize>,
+}
+
+/// Lines of the spec, from 1; 0 for a block that it does not have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinesInfo {
+    /// Where the cross-stream coordinate is declared.
+    pub coordinate: usize,
+    /// Where the `base` block begins.
+    pub base: usize,
+    /// Of each field.
+    pub fields: Table<FieldId, usize>,
+    /// Of each balance.
+    pub balances: Table<BalanceId, usize>,
 }
 
 /// A wavenumber that shows what the model is about.
@@ -101,6 +116,8 @@ pub struct ParameterInfo {
     pub upper: f64,
     /// Names of the values of a switch.
     pub choices: Vec<String>,
+    /// Whether it takes whole numbers alone.
+    pub whole: bool,
     /// Whether a base condition can determine it (`auto`).
     pub automatic: bool,
 }
@@ -185,8 +202,8 @@ pub struct CaseInfo {
     pub choices: Vec<usize>,
     /// [`KernelId::BaseConditions`]: residual, then its derivative by each jet.
     pub base_conditions: Vec<BaseConditionInfo>,
-    /// The ends of the conditions of [`ResidualId::BaseChecks`].
-    pub base_checks: Vec<End>,
+    /// The conditions of [`ResidualId::BaseChecks`].
+    pub base_checks: Vec<BaseCheckInfo>,
     /// [`KernelId::Conditions`]: one coefficient a monomial.
     pub conditions: Vec<ConditionInfo>,
     /// [`KernelId::AdjointConditions`]: one coefficient a jet; or why there are none.
@@ -202,6 +219,17 @@ pub struct BaseConditionInfo {
     pub end: End,
     /// The base jets that it depends on.
     pub jets: Vec<BaseJet>,
+}
+
+/// A condition that the base state, being in closed form, has to meet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseCheckInfo {
+    /// Where it holds.
+    pub end: End,
+    /// The condition as the spec writes it.
+    pub written: String,
+    /// Its line in the spec.
+    pub line: usize,
 }
 
 /// A boundary condition of the perturbation.
@@ -321,6 +349,13 @@ pub enum ResidualId {
     Conditions(CaseId),
     /// One value a condition that the base state of a case, being in closed form, has to meet.
     BaseChecks(CaseId),
+}
+
+impl ParameterInfo {
+    /// Whether it can vary continuously: a switch and a whole number cannot.
+    pub fn is_continuous(&self) -> bool {
+        self.choices.is_empty() && !self.whole
+    }
 }
 
 impl Structure {

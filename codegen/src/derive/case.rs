@@ -11,6 +11,7 @@ use crate::diagnostic::{Diagnostic, Location};
 use crate::formula::{Arrangement, Mark, plain};
 use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Node};
 use crate::model::{Closure, Condition, End};
+use std::cmp::Reverse;
 
 /// A condition on the adjoint fields: Σ symbol · jets = 0.
 #[derive(Clone, Debug)]
@@ -23,6 +24,17 @@ pub struct AdjointCondition {
     pub balance: BalanceId,
 }
 
+/// A condition that the base state, being in closed form, has to meet.
+#[derive(Clone, Debug)]
+pub struct BaseCheck {
+    /// Where it holds.
+    pub end: End,
+    /// In terms of the full state.
+    pub residual: Id,
+    /// Where the spec says so.
+    pub location: Location,
+}
+
 /// One combination of the structural switches.
 #[derive(Clone, Debug)]
 pub struct Case {
@@ -33,7 +45,7 @@ pub struct Case {
     /// Conditions of the base state.
     pub base_conditions: Vec<BaseCondition>,
     /// Conditions that hold for fields of the base state in closed form: to be checked.
-    pub base_checks: Vec<(End, Id)>,
+    pub base_checks: Vec<BaseCheck>,
     /// The adjoint boundary conditions, or why there are none.
     pub adjoint: Result<Vec<AdjointCondition>, String>,
     /// What closes k = 0.
@@ -164,6 +176,28 @@ fn check_count(
     None
 }
 
+/// The solved field that a condition of the base state is about: the one with the highest derivative in it, and of
+/// several the first.
+fn solved_field(deriver: &Deriver, problem: &CaseProblem, residual: Id) -> Option<FieldId> {
+    let mut highest: Option<(u8, Reverse<FieldId>)> = None;
+    for node in deriver.graph.topological(&[residual]) {
+        let fields: Vec<(u8, FieldId)> = match deriver.graph.node(node) {
+            Node::Base(field, order) => vec![(*order, *field)],
+            Node::BaseLaw(atom) => {
+                let depends = &deriver.dependence[atom.law];
+                let fields = depends.ids().filter(|&f| depends[f]);
+                fields.map(|field| (atom.y, field)).collect()
+            }
+            _ => Vec::new(),
+        };
+        let solved = fields
+            .into_iter()
+            .filter(|(_, f)| problem.solved.contains(f));
+        highest = highest.max(solved.map(|(order, field)| (order, Reverse(field))).max());
+    }
+    highest.map(|(_, field)| field.0)
+}
+
 /// Base conditions: those of the `base` block, and those of `boundary` about fields that the
 /// `base` block leaves alone at that end.
 fn base_conditions(
@@ -173,35 +207,24 @@ fn base_conditions(
     written_base: &[&Condition],
     mistakes: &mut Vec<Diagnostic>,
 ) -> Option<Vec<BaseCondition>> {
-    let mut found: Vec<(BaseCondition, Vec<FieldId>)> = Vec::new();
-    for (condition, own) in written_base
-        .iter()
-        .map(|c| (c, true))
-        .chain(written.iter().map(|c| (c, false)))
-    {
+    let mut found: Vec<BaseCondition> = Vec::new();
+    let mut replaced: Vec<(End, FieldId)> = Vec::new();
+    for condition in written_base {
+        let end = condition.end;
         let residual = deriver.base_part(condition.residual)?;
-        let fields = base_fields(deriver, residual);
-        let solved: Vec<FieldId> = fields
-            .into_iter()
-            .filter(|f| problem.solved.contains(f))
-            .collect();
-        if solved.is_empty() {
-            continue;
-        }
-        let overridden = found.iter().any(|(other, known)| {
-            other.end == condition.end && known.iter().any(|f| solved.contains(f))
-        });
-        if own || !overridden {
-            found.push((
-                BaseCondition {
-                    end: condition.end,
-                    residual,
-                },
-                solved,
-            ));
+        if let Some(field) = solved_field(deriver, problem, residual) {
+            replaced.push((end, field));
+            found.push(BaseCondition { end, residual });
         }
     }
-    let found: Vec<BaseCondition> = found.into_iter().map(|(c, _)| c).collect();
+    for condition in written {
+        let end = condition.end;
+        let residual = deriver.base_part(condition.residual)?;
+        let field = solved_field(deriver, problem, residual);
+        if field.is_some_and(|field| !replaced.contains(&(end, field))) {
+            found.push(BaseCondition { end, residual });
+        }
+    }
     let integrals = deriver.model.base.integrals.len()
         + deriver.model.mean.iter().filter(|closure| {
             matches!(closure, crate::model::Closure::Unknown { field, .. } if problem.solved.contains(field))
@@ -270,7 +293,7 @@ fn base_checks(
     problem: &CaseProblem,
     written: &[&Condition],
     written_base: &[&Condition],
-) -> Vec<(End, Id)> {
+) -> Vec<BaseCheck> {
     let fields = |graph: &Graph, id: Id| -> Vec<FieldId> {
         let nodes = graph.topological(&[id]).into_iter();
         let mut fields: Vec<FieldId> = nodes
@@ -298,7 +321,11 @@ fn base_checks(
                 .any(|f| problem.solved.contains(f))
         });
         if !solved && (own || !replaced) {
-            found.push((condition.end, condition.residual));
+            found.push(BaseCheck {
+                end: condition.end,
+                residual: condition.residual,
+                location: condition.location.clone(),
+            });
         }
     }
     found

@@ -19,7 +19,7 @@ mod wall;
 
 pub use base::BaseRow;
 pub use boundary::{Combination, Symbol};
-pub use case::{AdjointCondition, Case};
+pub use case::{AdjointCondition, BaseCheck, Case};
 pub use closure::CaseClosure;
 pub use linear::{AdjointTerm, DirectTerm, Term};
 pub use offsets::Offsets;

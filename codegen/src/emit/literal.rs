@@ -30,10 +30,12 @@ macro_rules! literals {
 }
 
 literals! {
-    Structure { name, title, order, periodic, coordinate, fields, parameters, balances, base_order, base, offsets, adjoint_offsets, parity, linear, adjoint, form_jets, form_coefficients, forms, residual_jets, switches, cases, amplitude, outputs, typical, operations }
+    Structure { name, title, order, periodic, coordinate, fields, parameters, balances, base_order, base, offsets, adjoint_offsets, parity, linear, adjoint, form_jets, form_coefficients, forms, residual_jets, switches, cases, amplitude, outputs, typical, lines, operations }
     TypicalInfo { k, near }
+    LinesInfo { coordinate, base, fields, balances }
+    BaseCheckInfo { end, written, line }
     FieldInfo { name, doc, lower, upper, uniform }
-    ParameterInfo { name, doc, default, lower, upper, choices, automatic }
+    ParameterInfo { name, doc, default, lower, upper, choices, whole, automatic }
     BaseInfo { solved, closed, rows, offsets, integrals, automatic }
     BaseJet { field, order }
     BaseRowInfo { balance, jets }

@@ -2,5 +2,6 @@
 
 pub mod comparison;
 pub mod literal;
+pub(crate) mod name;
 pub mod rust;
 pub mod text;

@@ -3,6 +3,7 @@
 //! Every kernel is a function of straight-line code; the equations stand in its documentation.
 
 use super::literal::Literal;
+use super::name::Identifiers;
 use super::text;
 use crate::derive::Derivation;
 use crate::kernel::{Kernel, ModelKernels, Operation};
@@ -22,13 +23,16 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
         functions.extend(real_function(&name, kernel));
         evaluate.extend(quote!(s::KernelId::#pattern => #name(point, out),));
     }
+    let mut identifiers = Identifiers::default();
+    let balances = &model.structure.balances;
+    let identifiers = balances.map(|name| identifiers.balance(name));
     let mut forms = TokenStream::new();
     for (index, rows) in model.forms.iter().enumerate() {
         let degree = index + 2;
         for (row, kernel) in rows.pairs() {
             let Some(kernel) = kernel else { continue };
-            let balance = &model.structure.balances[row];
-            let name = format_ident!("n{}_{}", degree, identifier(balance));
+            let balance = &balances[row];
+            let name = format_ident!("n{}_{}", degree, identifiers[row]);
             let equation = text::nonlinear_row(derivation, degree, row);
             functions.extend(form_function(&name, kernel, degree, balance, &equation));
             let arguments = (0..degree).map(proc_macro2::Literal::usize_unsuffixed);
@@ -129,16 +133,6 @@ fn pretty(code: TokenStream) -> String {
     match syn::parse2::<syn::File>(code.clone()) {
         Ok(file) => prettyplease::unparse(&file),
         Err(_) => code.to_string(),
-    }
-}
-
-/// A name as Rust accepts it.
-fn identifier(name: &str) -> String {
-    let lower = name.to_lowercase();
-    if syn::parse_str::<Ident>(&lower).is_ok() {
-        lower
-    } else {
-        format!("{lower}_")
     }
 }
 

@@ -36,6 +36,10 @@ impl Id {
 pub struct Graph {
     nodes: Vec<Node>,
     known: HashMap<Node, Id>,
+    /// Levels of each node down to its leaves.
+    depths: Vec<u32>,
+    /// Levels of the body of each law.
+    law_depths: Vec<u32>,
     /// Terms and factors handled so far.
     work: usize,
 }
@@ -72,9 +76,29 @@ impl Graph {
             return id;
         }
         let id = Id(self.nodes.len() as u32);
+        let mut below = match &node {
+            Node::StateLaw(atom) => self
+                .law_depths
+                .get(usize::from(atom.law.0))
+                .copied()
+                .unwrap_or(0),
+            _ => 0,
+        };
+        node.for_each_child(|child| below = below.max(self.depths[child.index()]));
+        self.depths.push(below + 1);
         self.nodes.push(node.clone());
         self.known.insert(node, id);
         id
+    }
+
+    /// How many nodes lie on the longest way from `id` to a leaf, through the bodies of the laws on it.
+    pub fn depth(&self, id: Id) -> usize {
+        self.depths[id.index()] as usize
+    }
+
+    /// Takes note of how deep the body of the next law is.
+    pub(crate) fn declare_law(&mut self, body: Id) {
+        self.law_depths.push(self.depths[body.index()]);
     }
 
     /// Whether any node below `id` (itself included) satisfies `predicate`.

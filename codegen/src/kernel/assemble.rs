@@ -2,7 +2,7 @@
 
 use super::ModelKernels;
 use super::polarise::form_tables;
-use crate::derive::{CaseClosure, Derivation, Opener, base_value};
+use crate::derive::{BaseCheck, CaseClosure, Derivation, Opener, base_value};
 use crate::graph::{Graph, Id, Jet, Node, Variable};
 use crate::model::Amplitude;
 use landau_contract::*;
@@ -154,6 +154,7 @@ impl Assembler<'_> {
                     lower: p.lower,
                     upper: p.upper,
                     choices: p.choices.clone(),
+                    whole: p.whole,
                     automatic: automatic(id),
                 })
                 .collect(),
@@ -184,6 +185,15 @@ impl Assembler<'_> {
                 k: typical.k,
                 near: typical.near.map_or(Vec::new(), |near| near.to_vec()),
             }),
+            lines: LinesInfo {
+                coordinate: model
+                    .interval
+                    .as_ref()
+                    .map_or(0, |i| model.line(&i.location)),
+                base: model.line(&model.base.location),
+                fields: model.fields.map(|f| model.line(&f.location)),
+                balances: model.balances.map(|b| model.line(&b.location)),
+            },
             operations: Vec::new(),
         }
     }
@@ -332,10 +342,16 @@ impl Assembler<'_> {
         }
         let coefficients = layout::write_closures(coefficients);
         self.opened(KernelId::Closures(id), coefficients);
+        let model = self.model;
+        let base_check = |check: &BaseCheck| BaseCheckInfo {
+            end: check.end,
+            written: model.written(&check.location),
+            line: model.line(&check.location),
+        };
         CaseInfo {
             choices: case.choices.clone(),
             base_conditions,
-            base_checks: case.base_checks.iter().map(|(end, _)| *end).collect(),
+            base_checks: case.base_checks.iter().map(base_check).collect(),
             conditions,
             adjoint,
             closures,

@@ -105,8 +105,8 @@ impl Assembler<'_> {
             }
             residuals.push((ResidualId::Conditions(id), opened));
             let mut opened = Vec::new();
-            for (_, residual) in &case.base_checks {
-                opened.push(self.opener.at_state(self.graph, *residual));
+            for check in &case.base_checks {
+                opened.push(self.opener.at_state(self.graph, check.residual));
             }
             residuals.push((ResidualId::BaseChecks(id), opened));
         }

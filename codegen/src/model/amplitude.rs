@@ -4,34 +4,75 @@ use super::context::Context;
 use super::mistake::view;
 use super::scope::{Names, Resolved, is_two};
 use super::statement::field_index;
-use super::{Amplitude, Field, Weight};
+use super::{Amplitude, Balance, Closure, Field, Law, Weight};
 use crate::diagnostic::Diagnostic;
-use crate::graph::{FieldId, Id, Table};
+use crate::graph::{BalanceId, FieldId, Graph, Id, LawId, Node, Operator, Table};
 use crate::syntax::tree::*;
+use std::collections::BTreeSet;
 
-/// The amplitude block; without one, ∫ Σ |q|² dy = 1.
-pub(super) fn amplitude(
-    item: Option<&AmplitudeItem>,
+/// Without a word of the user: ∫ Σ |q|² dy = 1, over the profiles but for gauges that no time derivative holds, such
+/// as a pressure: their size depends on the units of the balances.
+pub(super) fn default_amplitude(
     fields: &Table<FieldId, Field>,
+    balances: &Table<BalanceId, Balance>,
+    mean: &[Closure],
+    laws: &Table<LawId, Law>,
     names: &mut Names,
-) -> Resolved<Amplitude> {
-    match item {
-        // Without a word of the user: ∫ Σ |q|² dy = 1.
-        None => {
-            let one = names.graph.one();
-            let profiles = fields.ids().filter(|&f| !fields[f].uniform);
-            let weighted = profiles.map(|field| Weight {
-                field,
-                weight: one,
-                written: String::new(),
-            });
-            Ok(Amplitude::Integral {
-                weights: weighted.collect(),
-                value: one,
-                written: "1".into(),
-            })
+) -> Amplitude {
+    let moving = moving_fields(&names.graph, balances, laws);
+    let is_gauge = |field: &FieldId| {
+        let mut closures = mean.iter();
+        closures
+            .any(|closure| matches!(closure, Closure::Gauge { field: gauge, .. } if gauge == field))
+    };
+    let one = names.graph.one();
+    let profiles = fields.ids().filter(|&f| !fields[f].uniform);
+    let counted = profiles.filter(|f| !is_gauge(f) || moving.contains(f));
+    let weighted = counted.map(|field| Weight {
+        field,
+        weight: one,
+        written: String::new(),
+    });
+    Amplitude::Integral {
+        weights: weighted.collect(),
+        value: one,
+        written: "1".into(),
+    }
+}
+
+/// Fields under a time derivative, those that laws there depend on among them.
+fn moving_fields(
+    graph: &Graph,
+    balances: &Table<BalanceId, Balance>,
+    laws: &Table<LawId, Law>,
+) -> BTreeSet<FieldId> {
+    let roots: Vec<Id> = balances.iter().map(|b| b.residual).collect();
+    let nodes = graph.topological(&roots).into_iter();
+    let mut open: Vec<Id> = nodes
+        .filter_map(|node| match graph.node(node) {
+            Node::Derivative(Operator::Dt, argument) => Some(*argument),
+            _ => None,
+        })
+        .collect();
+    let (mut fields, mut opened) = (BTreeSet::new(), BTreeSet::new());
+    while let Some(id) = open.pop() {
+        for node in graph.topological(&[id]) {
+            match graph.node(node) {
+                Node::Jet(jet) => {
+                    fields.insert(jet.of);
+                }
+                Node::StateLaw(atom) if opened.insert(atom.law) => open.push(laws[atom.law].body),
+                _ => {}
+            }
         }
-        Some(AmplitudeItem::Integral { integrand, value }) => {
+    }
+    fields
+}
+
+/// The amplitude block.
+pub(super) fn amplitude(item: &AmplitudeItem, names: &mut Names) -> Resolved<Amplitude> {
+    match item {
+        AmplitudeItem::Integral { integrand, value } => {
             let mut weights = Vec::new();
             quadratic(integrand, None, names, &mut weights)?;
             let written = names.written(value);
@@ -42,11 +83,11 @@ pub(super) fn amplitude(
                 written,
             })
         }
-        Some(AmplitudeItem::Point {
+        AmplitudeItem::Point {
             place,
             field,
             value,
-        }) => {
+        } => {
             let written = [
                 place.as_ref().map_or(String::new(), |p| names.written(p)),
                 names.written(value),

@@ -78,6 +78,7 @@ pub(super) fn interval(
         lower,
         upper,
         written,
+        location: item.name.location.clone(),
     })
 }
 
@@ -107,6 +108,7 @@ pub(super) fn parameters(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec
                 lower: f64::NEG_INFINITY,
                 upper: f64::INFINITY,
                 choices: Vec::new(),
+                whole: false,
                 location: item.name.location.clone(),
             }));
         names.used.push(false);

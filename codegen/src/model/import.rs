@@ -76,6 +76,14 @@ fn load_file(
     if let Some(&scope) = known.get(&name.text) {
         return Some(scope);
     }
+    if let Some(reason) = sources.unreadable.get(&name.text) {
+        mistakes.push(Diagnostic::new(
+            name.location.clone(),
+            format!("the law file `{}` cannot be read: {reason}", name.text),
+            "a law file of UTF-8 text, at most 1 MiB",
+        ));
+        return None;
+    }
     let Some(source) = sources.laws.get(&name.text) else {
         let near = nearest(&name.text, sources.laws.keys().map(String::as_str));
         let available: Vec<_> = sources.laws.keys().map(|n| format!("`{n}`")).collect();
@@ -139,6 +147,7 @@ pub(super) fn bind_imports(
                 body: names.graph.zero(),
             }
         });
+        names.graph.declare_law(law.body);
         names.laws.insert(item.alias.text.clone(), laws.push(law));
     }
     laws

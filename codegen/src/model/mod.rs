@@ -16,7 +16,7 @@ pub use landau_contract::End;
 use landau_contract::{BalanceId, FieldId, LawId, ParameterId, Table};
 pub use resolve::resolve;
 
-use crate::diagnostic::Location;
+use crate::diagnostic::{Location, shortened};
 use crate::formula::{Arrangement, Letters};
 use crate::graph::{Graph, Id};
 
@@ -81,6 +81,21 @@ impl Model {
         }
     }
 
+    /// The line of a place, from 1.
+    pub fn line(&self, place: &Location) -> usize {
+        let text = self.sources.get(place.file).map_or("", |file| &file.text);
+        let before = text.get(..place.range.start).unwrap_or_default();
+        before.matches('\n').count() + 1
+    }
+
+    /// What stands at a place, on one line.
+    pub fn written(&self, place: &Location) -> String {
+        let text = self.sources.get(place.file).map_or("", |file| &file.text);
+        let written = text.get(place.range.clone()).unwrap_or_default();
+        let line = written.split_whitespace().collect::<Vec<_>>().join(" ");
+        shortened(&line)
+    }
+
     /// Name of the cross-stream coordinate.
     pub fn coordinate(&self) -> &str {
         self.interval.as_ref().map_or("y", |i| i.name.as_str())
@@ -106,6 +121,8 @@ pub struct Interval {
     pub upper: Id,
     /// The ends as the user wrote them.
     pub written: [String; 2],
+    /// Where the spec says so.
+    pub location: Location,
 }
 
 impl Interval {
@@ -146,6 +163,8 @@ pub struct Parameter {
     pub upper: f64,
     /// Names of the values of a switch; empty for a number.
     pub choices: Vec<String>,
+    /// Whether it takes whole numbers alone.
+    pub whole: bool,
     /// Where the spec says so.
     pub location: Location,
 }

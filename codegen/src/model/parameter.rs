@@ -2,11 +2,13 @@
 
 use super::Parameter;
 use super::context::Context;
+use super::mistake::twice;
 use super::scope::{Names, Resolved, View};
-use crate::diagnostic::{Diagnostic, nearest};
+use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::graph::{Id, Node, ParameterId};
 use crate::syntax::tree::*;
 use num_traits::ToPrimitive;
+use std::collections::HashMap;
 
 impl Names {
     /// A parameter seen from a scope; a law file's own are registered on first use.
@@ -43,19 +45,24 @@ impl Names {
 
     /// The value of an expression without atoms.
     fn numeric(&self, id: Id) -> Option<f64> {
-        match self.graph.node(id) {
-            Node::Number(value) => value.to_f64(),
-            Node::Pi => Some(std::f64::consts::PI),
-            Node::Sum(constant, terms) => {
-                terms.iter().try_fold(constant.to_f64()?, |sum, (t, c)| {
-                    Some(sum + self.numeric(*t)? * c.to_f64()?)
-                })
-            }
-            Node::Product(factors) => factors.iter().try_fold(1.0, |product, (b, e)| {
-                Some(product * self.numeric(*b)?.powf(e.to_f64()?))
-            }),
-            _ => None,
+        let mut values: HashMap<Id, f64> = HashMap::new();
+        for node in self.graph.topological(&[id]) {
+            let value = match self.graph.node(node) {
+                Node::Number(value) => value.to_f64()?,
+                Node::Pi => std::f64::consts::PI,
+                Node::Sum(constant, terms) => {
+                    terms.iter().try_fold(constant.to_f64()?, |sum, (t, c)| {
+                        Some(sum + values[t] * c.to_f64()?)
+                    })?
+                }
+                Node::Product(factors) => factors.iter().try_fold(1.0, |product, (b, e)| {
+                    Some(product * values[b].powf(e.to_f64()?))
+                })?,
+                _ => return None,
+            };
+            values.insert(node, value);
         }
+        values.get(&id).copied()
     }
 
     fn constant_parameter(&mut self, item: &ParameterItem) -> Option<Parameter> {
@@ -72,6 +79,11 @@ impl Names {
                 upper = to.as_ref().map_or(Ok(upper), |e| self.constant(e))?;
             }
             ParameterDomain::Choices(names) => {
+                for (position, name) in names.iter().enumerate() {
+                    if names[..position].iter().any(|n| n.text == name.text) {
+                        return Err(twice(name));
+                    }
+                }
                 choices = names.iter().map(|n| n.text.clone()).collect();
                 upper = choices.len() as f64 - 1.0;
                 lower = 0.0;
@@ -111,6 +123,9 @@ impl Names {
                 format!("a default in {lower}..{upper}"),
             ));
         }
+        if let Some(place) = &item.whole {
+            whole_number(place, default, &choices)?;
+        }
         let (name, doc) = (item.name.text.clone(), item.doc.clone());
         Ok(Parameter {
             name,
@@ -119,7 +134,27 @@ impl Names {
             lower,
             upper,
             choices,
+            whole: item.whole.is_some(),
             location: item.name.location.clone(),
         })
     }
+}
+
+/// Refuses `whole` beside choices, and a default that is no whole number.
+fn whole_number(place: &Location, default: f64, choices: &[String]) -> Resolved<()> {
+    let refuse = |message: String, expected: &str| {
+        let mistake = Diagnostic::new(place.clone(), message, expected);
+        Err(mistake)
+    };
+    if !choices.is_empty() {
+        return refuse(
+            "a switch has choices, not numbers".into(),
+            "no `whole` here",
+        );
+    }
+    if default.fract() != 0.0 {
+        let message = format!("the default {default} is no whole number");
+        return refuse(message, "a default without a fraction");
+    }
+    Ok(())
 }

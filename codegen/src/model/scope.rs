@@ -16,6 +16,8 @@ const MOST_EXPANSIONS: usize = 5_000;
 const MOST_WORK: usize = 300_000;
 /// Deeper than any definition needs.
 const DEEPEST_EXPRESSION: usize = 256;
+/// Functions, sums and products inside one another, those of definitions and laws included.
+const DEEPEST_MEANING: usize = 128;
 
 pub(super) type Resolved<T> = Result<T, Diagnostic>;
 
@@ -113,7 +115,16 @@ impl Names {
             self.expression_kind(expression, view)
         };
         self.depth -= 1;
-        result
+        match result {
+            Ok(id) if self.graph.depth(id) > DEEPEST_MEANING => Err(Diagnostic::new(
+                expression.location.clone(),
+                "the expression is nested too deeply",
+                format!(
+                    "at most {DEEPEST_MEANING} levels, those of its definitions and laws included"
+                ),
+            )),
+            result => result,
+        }
     }
 
     fn expression_kind(&mut self, expression: &Expression, view: &View) -> Resolved<Id> {
@@ -124,22 +135,7 @@ impl Names {
                 let inner = self.expression(inner, view)?;
                 Ok(self.graph.neg(inner))
             }
-            ExpressionKind::Binary(operator, left, right) => {
-                let (a, b) = (self.expression(left, view), self.expression(right, view));
-                let (a, b) = self.both(a, b)?;
-                match operator {
-                    Binary::Add => Ok(self.graph.add(a, b)),
-                    Binary::Subtract => Ok(self.graph.sub(a, b)),
-                    Binary::Multiply => Ok(self.graph.mul(a, b)),
-                    Binary::Divide if self.graph.vanishes(b) => Err(Diagnostic::new(
-                        right.location.clone(),
-                        "division by zero",
-                        "a nonzero divisor",
-                    )),
-                    Binary::Divide => Ok(self.graph.div(a, b)),
-                    Binary::Power => self.power(a, b, right),
-                }
-            }
+            ExpressionKind::Binary(..) => self.operations(expression, view),
             ExpressionKind::Modulus(_) => Err(Diagnostic::new(
                 place.clone(),
                 "|q| stands for a modulus in the amplitude alone",
@@ -148,6 +144,38 @@ impl Names {
             ExpressionKind::Select(switch, branches) => self.select(switch, branches, view, place),
             ExpressionKind::Name(name) => self.name(name, place, view),
             ExpressionKind::Call(name, arguments) => self.call(name, arguments, place, view),
+        }
+    }
+
+    /// a ± b ± c …, a * b / c …: from left to right, without a level of recursion for each operand.
+    fn operations(&mut self, expression: &Expression, view: &View) -> Resolved<Id> {
+        let (mut first, mut steps) = (expression, Vec::new());
+        while let ExpressionKind::Binary(operator, left, right) = &first.kind {
+            steps.push((operator, &**right));
+            first = left;
+        }
+        let mut value = self.expression(first, view);
+        for (operator, right) in steps.into_iter().rev() {
+            let operand = self.expression(right, view);
+            value = self
+                .both(value, operand)
+                .and_then(|(a, b)| self.operation(*operator, a, b, right));
+        }
+        value
+    }
+
+    fn operation(&mut self, operator: Binary, a: Id, b: Id, right: &Expression) -> Resolved<Id> {
+        match operator {
+            Binary::Add => Ok(self.graph.add(a, b)),
+            Binary::Subtract => Ok(self.graph.sub(a, b)),
+            Binary::Multiply => Ok(self.graph.mul(a, b)),
+            Binary::Divide if self.graph.vanishes(b) => Err(Diagnostic::new(
+                right.location.clone(),
+                "division by zero",
+                "a nonzero divisor",
+            )),
+            Binary::Divide => Ok(self.graph.div(a, b)),
+            Binary::Power => self.power(a, b, right),
         }
     }
 

@@ -8,9 +8,13 @@ use super::*;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::graph::{Jet, Node, Operator};
 use crate::syntax::tree::*;
+use std::collections::BTreeSet;
 
 /// Mistakes after which no more are looked for.
 const MOST_MISTAKES: usize = 100;
+
+/// Laws that a model declares: more than any needs.
+const MOST_LAWS: usize = 1000;
 
 /// Collects mistakes and goes on.
 pub(super) fn keep<T>(result: Resolved<T>, mistakes: &mut Vec<Diagnostic>) -> Option<T> {
@@ -40,13 +44,25 @@ pub(super) fn model(
         declaration::declare(definition, names, mistakes);
     }
     let mut laws = bind_imports(imported, names, mistakes);
-    for definition in tree.definitions.iter().filter(|d| d.is_law) {
+    let own_laws = tree.definitions.iter().filter(|d| d.is_law);
+    if let Some(surplus) = own_laws.clone().nth(MOST_LAWS) {
+        mistakes.push(Diagnostic::new(
+            surplus.name.location.clone(),
+            format!("the model has {} laws", own_laws.count()),
+            format!("at most {MOST_LAWS}"),
+        ));
+        return None;
+    }
+    for definition in own_laws {
         if let Some(law) = law(definition, names, mistakes) {
+            names.graph.declare_law(law.body);
             names.laws.insert(law.name.clone(), laws.push(law));
         }
     }
     let interval = declaration::interval(tree, names, mistakes);
-    let balances = tree
+    each_once(tree.balances.iter().map(|b| &b.name), mistakes);
+    each_once(tree.outputs.iter().map(|o| &o.name), mistakes);
+    let balances: Table<BalanceId, Balance> = tree
         .balances
         .iter()
         .filter_map(|b| keep(balance(b, names), mistakes))
@@ -57,15 +73,17 @@ pub(super) fn model(
     for wall in &tree.boundary {
         wall_conditions(wall, ends, names, mistakes, &mut boundary);
     }
-    let mean = tree
+    let mean: Vec<Closure> = tree
         .mean
         .iter()
         .filter_map(|m| keep(mean(m, names), mistakes))
         .collect();
-    let amplitude = keep(
-        amplitude::amplitude(tree.amplitude.as_ref(), &fields, names),
-        mistakes,
-    );
+    let amplitude = match &tree.amplitude {
+        Some(item) => keep(amplitude::amplitude(item, names), mistakes),
+        None => Some(amplitude::default_amplitude(
+            &fields, &balances, &mean, &laws, names,
+        )),
+    };
     let outputs = tree
         .outputs
         .iter()
@@ -109,6 +127,13 @@ pub(super) fn model(
         graph: std::mem::take(&mut names.graph),
         names: std::mem::replace(names, Names::new()),
     })
+}
+
+/// Reports names that stand twice in one list.
+fn each_once<'a>(names: impl Iterator<Item = &'a Name>, mistakes: &mut Vec<Diagnostic>) {
+    let mut taken = BTreeSet::new();
+    let repeated = names.filter(|name| !taken.insert(name.text.as_str()));
+    mistakes.extend(repeated.map(twice));
 }
 
 fn law(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic>) -> Option<Law> {
@@ -250,6 +275,12 @@ fn base(
                         "the name of a parameter",
                     )
                 })?;
+            if names.parameters[parameter].whole {
+                let message = format!("`{}` takes whole numbers", item.parameter.text);
+                let place = item.parameter.location.clone();
+                let expected = "a parameter that varies continuously";
+                return Err(Diagnostic::new(place, message, expected));
+            }
             let end = end(&item.place, ends, names)?;
             let residual = difference(&item.equation, names)?;
             let location = item.equation.location.clone();

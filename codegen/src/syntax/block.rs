@@ -6,7 +6,7 @@ use super::{Parsed, Reader, spaced};
 use crate::diagnostic::Location;
 use syn::parse::ParseStream;
 
-impl Reader {
+impl Reader<'_> {
     pub(super) fn base_item(&self, input: ParseStream, base: &mut BaseBlock) -> Parsed<()> {
         if self.peek_word(input, "at") {
             return self.wall(input).map(|wall| base.walls.push(wall));

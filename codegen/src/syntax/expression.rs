@@ -3,6 +3,7 @@
 //! `syn::Expr` reads `a * b^2 + c` as an exclusive or; this grammar is the mathematician's:
 //! `^` binds tightest and to the right, then unary minus, then `* /`, then `+ -`.
 
+use super::tokens::{DEEPEST_NESTING, too_deep};
 use super::tree::{Binary, Expression, ExpressionKind, Formula, Name};
 use super::{Reader, spaced};
 use crate::diagnostic::{Diagnostic, Location};
@@ -15,13 +16,16 @@ type Parsed<T> = Result<T, Diagnostic>;
 
 /// Decimal exponents beyond this are out of the range of double precision.
 const LARGEST_EXPONENT: i32 = 307;
-/// Terms of one sum, factors of one product, signs before one factor.
+/// Terms of one sum, factors of one product.
 const MOST_PARTS: usize = 2000;
+/// Signs before one factor, powers of powers.
 const MOST_SIGNS: usize = 64;
+/// Height of a syntax tree: a long sum, and the brackets around it.
+const TALLEST_TREE: usize = 2500;
 /// Characters of a number.
 const LONGEST_NUMBER: usize = 320;
 
-impl Reader {
+impl Reader<'_> {
     /// formula := sum ('=' sum)?
     pub(super) fn formula(&self, input: ParseStream) -> Option<Formula> {
         let read = || {
@@ -42,8 +46,20 @@ impl Reader {
         formula.map_err(|mistake| self.report(mistake)).ok()
     }
 
-    /// sum := product (('+' | '-') product)*
+    /// expression := sum, at most [`DEEPEST_NESTING`] of them inside one another
     pub(super) fn expression(&self, input: ParseStream) -> Parsed<Expression> {
+        let depth = self.depth.get();
+        if depth > DEEPEST_NESTING {
+            return Err(too_deep(self.here(input)));
+        }
+        self.depth.set(depth + 1);
+        let sum = self.sum(input);
+        self.depth.set(depth);
+        sum
+    }
+
+    /// sum := product (('+' | '-') product)*
+    fn sum(&self, input: ParseStream) -> Parsed<Expression> {
         let mut left = self.product(input)?;
         for _ in 0..MOST_PARTS {
             let operator = if input.peek(Token![+]) {
@@ -54,9 +70,19 @@ impl Reader {
                 return Ok(left);
             };
             self.skip(input);
-            left = binary(operator, left, self.product(input)?);
+            left = self.binary(operator, left, self.product(input)?)?;
         }
         Err(self.too_long(input))
+    }
+
+    fn binary(&self, operator: Binary, left: Expression, right: Expression) -> Parsed<Expression> {
+        let location = spaced(&left.location, &right.location);
+        let kind = ExpressionKind::Binary(operator, Box::new(left), Box::new(right));
+        let whole = Expression::new(kind, location);
+        if whole.height > TALLEST_TREE {
+            return Err(too_deep(whole.location));
+        }
+        Ok(whole)
     }
 
     fn too_long(&self, input: ParseStream) -> Diagnostic {
@@ -77,7 +103,7 @@ impl Reader {
                 return Ok(left);
             };
             self.skip(input);
-            left = binary(operator, left, self.unary(input)?);
+            left = self.binary(operator, left, self.unary(input)?)?;
         }
         Err(self.too_long(input))
     }
@@ -95,11 +121,7 @@ impl Reader {
         let mut value = self.power(input)?;
         for (negative, place) in signs.into_iter().rev() {
             if negative {
-                let location = spaced(&place, &value.location);
-                value = Expression {
-                    kind: ExpressionKind::Negative(Box::new(value)),
-                    location,
-                };
+                value = negated(&place, value);
             }
         }
         Ok(value)
@@ -124,13 +146,9 @@ impl Reader {
         // Powers bind to the right.
         for (base, minus) in bases.into_iter().rev() {
             if let Some(place) = minus {
-                let location = spaced(&place, &value.location);
-                value = Expression {
-                    kind: ExpressionKind::Negative(Box::new(value)),
-                    location,
-                };
+                value = negated(&place, value);
             }
-            value = binary(Binary::Power, base, value);
+            value = self.binary(Binary::Power, base, value)?;
         }
         Ok(value)
     }
@@ -141,10 +159,7 @@ impl Reader {
             let content = self.parenthesised(input)?;
             let inner = self.expression(&content)?;
             self.finished(&content, "an operator or `)`")?;
-            return Ok(Expression {
-                kind: inner.kind,
-                location,
-            });
+            return Ok(Expression { location, ..inner });
         }
         if input.peek(Token![|]) {
             self.skip(input);
@@ -152,10 +167,8 @@ impl Reader {
             let end = self.here(input);
             self.punctuation(input, "|")?;
             let location = spaced(&location, &end);
-            return Ok(Expression {
-                kind: ExpressionKind::Modulus(Box::new(inner)),
-                location,
-            });
+            let kind = ExpressionKind::Modulus(Box::new(inner));
+            return Ok(Expression::new(kind, location));
         }
         if input.peek(syn::Lit) {
             return self.number(input);
@@ -168,10 +181,7 @@ impl Reader {
             return self.select(input, location);
         }
         if !input.peek(syn::token::Paren) {
-            return Ok(Expression {
-                kind: ExpressionKind::Name(name.text),
-                location,
-            });
+            return Ok(Expression::new(ExpressionKind::Name(name.text), location));
         }
         let end = self.here(input);
         let content = self.parenthesised(input)?;
@@ -184,10 +194,8 @@ impl Reader {
             self.punctuation(&content, ",")?;
         }
         let location = spaced(&location, &end);
-        Ok(Expression {
-            kind: ExpressionKind::Call(name, arguments),
-            location,
-        })
+        let kind = ExpressionKind::Call(name, arguments);
+        Ok(Expression::new(kind, location))
     }
 
     fn select(&self, input: ParseStream, start: Location) -> Parsed<Expression> {
@@ -204,10 +212,7 @@ impl Reader {
             }
         }
         let kind = ExpressionKind::Select(switch, branches);
-        Ok(Expression {
-            kind,
-            location: spaced(&start, &end),
-        })
+        Ok(Expression::new(kind, spaced(&start, &end)))
     }
 
     fn number(&self, input: ParseStream) -> Parsed<Expression> {
@@ -231,10 +236,7 @@ impl Reader {
                 .hint(format!("write a product as {digits}*{suffix}")));
         }
         match decimal(&digits) {
-            Some(value) => Ok(Expression {
-                kind: ExpressionKind::Number(value),
-                location,
-            }),
+            Some(value) => Ok(Expression::new(ExpressionKind::Number(value), location)),
             None => {
                 let message = format!("`{digits}` is out of range");
                 Err(Diagnostic::new(
@@ -247,10 +249,9 @@ impl Reader {
     }
 }
 
-fn binary(operator: Binary, left: Expression, right: Expression) -> Expression {
-    let location = spaced(&left.location, &right.location);
-    let kind = ExpressionKind::Binary(operator, Box::new(left), Box::new(right));
-    Expression { kind, location }
+fn negated(minus: &Location, value: Expression) -> Expression {
+    let location = spaced(minus, &value.location);
+    Expression::new(ExpressionKind::Negative(Box::new(value)), location)
 }
 
 /// The exact rational value of a decimal literal that double precision has room for.

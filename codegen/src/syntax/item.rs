@@ -24,7 +24,7 @@ const MODEL_ITEMS: [&str; 13] = [
 const MEAN: &str = "mean";
 const LAW_ITEMS: [&str; 4] = ["use", "parameters", "let", "law"];
 
-impl Reader {
+impl Reader<'_> {
     pub(super) fn model(&self, input: ParseStream) -> ModelTree {
         let mut tree = ModelTree::default();
         self.statements(input, |input| self.model_item(input, &mut tree));
@@ -173,7 +173,7 @@ impl Reader {
         Ok(CoordinateItem { name, interval })
     }
 
-    /// `name = default in domain "doc";`
+    /// `name = default in domain whole "doc";`
     fn parameter(&self, input: ParseStream) -> Parsed<ParameterItem> {
         let name = self.name(input, "the name of a parameter")?;
         let mut default = None;
@@ -199,6 +199,10 @@ impl Reader {
                 ParameterDomain::Range(lower, upper)
             };
         }
+        let whole = match self.peek_word(input, "whole") {
+            true => Some(self.word(input, "whole")?),
+            false => None,
+        };
         let doc = self.doc(input);
         self.punctuation(input, ";")?;
         let default = match (default, &domain) {
@@ -222,13 +226,16 @@ impl Reader {
             name,
             default,
             domain,
+            whole,
             doc,
         })
     }
 
     /// `lower..upper`, either end open.
     fn range(&self, input: ParseStream) -> Parsed<(Option<Expression>, Option<Expression>)> {
-        let ends = |input: ParseStream| input.peek(Token![;]) || input.peek(syn::LitStr);
+        let ends = |input: ParseStream| {
+            input.peek(Token![;]) || input.peek(syn::LitStr) || self.peek_word(input, "whole")
+        };
         let lower = if input.peek(Token![..]) {
             None
         } else {
@@ -314,7 +321,7 @@ impl Reader {
         if input.peek(Token![;]) {
             return self.punctuation(input, ";");
         }
-        Err(self.unexpected(input, "an operator or `;`"))
+        Err(self.missing(input, ";", "an operator or `;`"))
     }
 
     /// `left = right`

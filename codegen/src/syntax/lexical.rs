@@ -3,15 +3,19 @@
 //! Rust's lexer would answer an unbalanced bracket, a ∂ or a prime with a bare "lex error" and could
 //! be made to recurse without bound; here each gets its place and a hint.
 
+use super::printable::unprintable;
+use super::tokens::{DEEPEST_NESTING, too_deep};
 use crate::diagnostic::{Diagnostic, Location};
+use crate::sources::LARGEST_FILE;
+use std::iter::Peekable;
+use std::str::CharIndices;
 
-/// Deeper nesting than any model needs.
-const DEEPEST_NESTING: usize = 64;
-/// Longer than any model needs.
-const LARGEST_FILE: usize = 1 << 20;
+/// Characters of a number.
 const LONGEST_NUMBER: usize = 320;
+/// Blanks before a line that are counted.
+const WIDEST_INDENT: usize = 200;
 /// Mistakes after which the text is looked at no further.
-const MOST_MISTAKES: usize = 200;
+pub(super) const MOST_MISTAKES: usize = 200;
 
 /// Characters that people write in formulas and Rust's lexer does not know.
 const FOREIGN: [(char, &str); 12] = [
@@ -40,150 +44,271 @@ const FOREIGN: [(char, &str); 12] = [
 
 /// Mistakes that make the text unfit for lexing.
 pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
-    let at = |start: usize, len: usize| Location {
-        file,
-        range: start..start + len,
-    };
     if text.len() > LARGEST_FILE {
         let message = format!("the file has {} bytes", text.len());
-        return vec![Diagnostic::new(at(0, 0), message, "at most 1 MiB")];
+        let start = Location { file, range: 0..0 };
+        return vec![Diagnostic::new(start, message, "at most 1 MiB")];
     }
-    let mut found = Vec::new();
-    let mut open: Vec<(usize, char)> = Vec::new();
-    let mut characters = text.char_indices().peekable();
-    while let Some((position, character)) = characters.next() {
-        if found.len() >= MOST_MISTAKES {
-            return found;
+    let mistakes = unprintable(file, text);
+    if !mistakes.is_empty() {
+        return mistakes;
+    }
+    let mut scan = Scan {
+        file,
+        text,
+        characters: text.char_indices().peekable(),
+        found: Vec::new(),
+        open: Vec::new(),
+        pairs: Vec::new(),
+        first_long_text: None,
+    };
+    if scan.run().is_some() {
+        scan.end();
+    }
+    scan.found
+}
+
+/// The text of one file, read once from its start to its end.
+struct Scan<'a> {
+    file: usize,
+    text: &'a str,
+    characters: Peekable<CharIndices<'a>>,
+    found: Vec<Diagnostic>,
+    /// Brackets that are open.
+    open: Vec<(usize, char)>,
+    /// Braces that are closed: where each opens and closes.
+    pairs: Vec<(usize, usize)>,
+    /// Where the first text begins that goes on over the end of its line.
+    first_long_text: Option<usize>,
+}
+
+impl Scan<'_> {
+    /// Reads on to the end; `None` where a mistake says nothing sure of what follows it.
+    fn run(&mut self) -> Option<()> {
+        while let Some((position, character)) = self.characters.next() {
+            if self.found.len() >= MOST_MISTAKES {
+                return None;
+            }
+            let next = self.characters.peek().map(|&(_, c)| c);
+            match character {
+                '/' if next == Some('/') => {
+                    while self.characters.next_if(|&(_, c)| c != '\n').is_some() {}
+                }
+                '/' if next == Some('*') => self.comment(position),
+                '"' => self.quoted(position),
+                // Longer runs of digits are slow to read for what comes after.
+                _ if character.is_ascii_digit() => self.number(position),
+                '(' | '[' | '{' => self.opens(position, character)?,
+                ')' | ']' | '}' => self.closes(position, character)?,
+                ';' => self.ends_statement(position)?,
+                _ => self.single(position, character),
+            }
         }
-        match character {
-            '/' if characters.peek().is_some_and(|&(_, c)| c == '/') => {
-                while characters.next_if(|&(_, c)| c != '\n').is_some() {}
+        Some(())
+    }
+
+    fn at(&self, start: usize, len: usize) -> Location {
+        Location {
+            file: self.file,
+            range: start..start + len,
+        }
+    }
+
+    fn report(&mut self, position: usize, message: impl Into<String>, expected: impl Into<String>) {
+        let location = self.at(position, 1);
+        self.found
+            .push(Diagnostic::new(location, message, expected));
+    }
+
+    /// Skips a comment whose `/` has been read, with the comments inside it.
+    fn comment(&mut self, position: usize) {
+        self.characters.next();
+        let mut depth = 1;
+        while let Some((_, character)) = self.characters.next() {
+            match (character, self.characters.peek().map(|&(_, c)| c)) {
+                ('/', Some('*')) => depth += 1,
+                ('*', Some('/')) => depth -= 1,
+                _ => continue,
             }
-            '/' if characters.peek().is_some_and(|&(_, c)| c == '*') => {
-                characters.next();
-                let mut previous = ' ';
-                let closed = characters.by_ref().any(|(_, c)| {
-                    let end = previous == '*' && c == '/';
-                    previous = c;
-                    end
-                });
-                if !closed {
-                    let message = "this comment is never closed";
-                    found.push(Diagnostic::new(
-                        at(position, 2),
-                        message,
-                        "`*/` further down",
-                    ));
-                }
+            self.characters.next();
+            if depth == 0 {
+                return;
             }
-            '"' => {
-                let mut escaped = false;
-                let closed = characters.by_ref().any(|(_, c)| {
-                    let end = c == '"' && !escaped;
-                    escaped = c == '\\' && !escaped;
-                    end
-                });
-                if !closed {
-                    let message = "this text is never closed";
-                    found.push(Diagnostic::new(at(position, 1), message, "a closing `\"`"));
-                }
+        }
+        // What it hides may close the brackets before it.
+        self.open.clear();
+        let message = "this comment is never closed";
+        let place = self.at(position, 2);
+        self.found
+            .push(Diagnostic::new(place, message, "`*/` further down"));
+    }
+
+    /// Skips a text whose `"` has been read.
+    fn quoted(&mut self, position: usize) {
+        let (mut escaped, mut lines) = (false, 0);
+        let closed = self.characters.by_ref().any(|(_, c)| {
+            let end = c == '"' && !escaped;
+            escaped = c == '\\' && !escaped;
+            lines += usize::from(c == '\n');
+            end
+        });
+        if closed {
+            if lines > 0 {
+                self.first_long_text.get_or_insert(position);
             }
-            // Longer runs of digits are slow to read for what comes after.
-            _ if character.is_ascii_digit() => {
-                let mut length = 1;
-                while characters
-                    .next_if(|&(_, c)| c.is_ascii_alphanumeric())
-                    .is_some()
-                {
-                    length += 1;
-                }
-                if length > LONGEST_NUMBER {
-                    let message = format!("a number of {length} characters");
-                    let expected = format!("at most {LONGEST_NUMBER}");
-                    found.push(Diagnostic::new(at(position, 1), message, expected));
-                }
-            }
-            '(' | '[' | '{' => {
-                open.push((position, character));
-                if open.len() > DEEPEST_NESTING {
-                    let message = "brackets are nested too deeply";
-                    let expected = format!("at most {DEEPEST_NESTING} levels");
-                    found.push(
-                        Diagnostic::new(at(position, 1), message, expected)
-                            .hint("name the inner parts with `let`"),
-                    );
-                    return found;
-                }
-            }
-            ')' | ']' | '}' => match open.pop() {
-                Some((_, opening)) if closing(opening) == character => {}
-                Some((start, opening)) => {
-                    let message = format!("`{opening}` is closed by `{character}`");
-                    let expected =
-                        format!("`{}`, for the `{opening}` opened before", closing(opening));
-                    let line = text[..start].matches('\n').count() + 1;
-                    found.push(
-                        Diagnostic::new(at(position, 1), message, expected)
-                            .hint(format!("the `{opening}` stands in line {line}")),
-                    );
-                    return found;
-                }
-                None => {
-                    let message = format!("`{character}` closes nothing");
-                    let expected = "no bracket is open here";
-                    found.push(Diagnostic::new(at(position, 1), message, expected));
-                    return found;
-                }
-            },
-            '\'' => found.push(
-                Diagnostic::new(
-                    at(position, 1),
-                    "a prime is not part of the language",
-                    "an operator or `;`",
-                )
-                .hint("write a y-derivative as dy(q); a perturbation needs no mark"),
+            return;
+        }
+        self.open.clear();
+        // The quotation mark that is missing may be that of an earlier text, which then ends at the next one.
+        match self.first_long_text {
+            Some(first) => self.report(
+                first,
+                "this text goes on over the end of its line, and a later one is never closed",
+                "a closing `\"`",
             ),
-            '#' | '`' | '\\' | '$' | '@' | '~' | '?' => found.push(Diagnostic::new(
-                at(position, 1),
+            None => self.report(position, "this text is never closed", "a closing `\"`"),
+        }
+    }
+
+    fn number(&mut self, position: usize) {
+        let mut length = 1;
+        let is_part = |&(_, c): &(usize, char)| c.is_ascii_alphanumeric();
+        while self.characters.next_if(is_part).is_some() {
+            length += 1;
+        }
+        if length > LONGEST_NUMBER {
+            let message = format!("a number of {length} characters");
+            self.report(position, message, format!("at most {LONGEST_NUMBER}"));
+        }
+    }
+
+    fn opens(&mut self, position: usize, character: char) -> Option<()> {
+        self.open.push((position, character));
+        if self.open.len() > DEEPEST_NESTING {
+            self.found.push(too_deep(self.at(position, 1)));
+            return None;
+        }
+        Some(())
+    }
+
+    fn closes(&mut self, position: usize, character: char) -> Option<()> {
+        match self.open.pop() {
+            Some((start, opening)) if closing(opening) == character => {
+                if character == '}' {
+                    self.pairs.push((start, position));
+                }
+                return Some(());
+            }
+            Some((start, opening)) => {
+                let message = format!("`{opening}` is closed by `{character}`");
+                let expected = format!("`{}`, for the `{opening}` opened before", closing(opening));
+                let hint = format!("the `{opening}` stands in line {}", self.line(start));
+                let place = self.at(position, 1);
+                self.found
+                    .push(Diagnostic::new(place, message, expected).hint(hint));
+            }
+            None => {
+                let message = format!("`{character}` closes nothing");
+                let hint = self.misplaced_brace();
+                let place = self.at(position, 1);
+                self.found.push(
+                    Diagnostic::new(place, message, "no bracket is open here").maybe_hint(hint),
+                );
+            }
+        }
+        None
+    }
+
+    /// A `;` ends a statement, and the brackets that the statement has opened.
+    fn ends_statement(&mut self, position: usize) -> Option<()> {
+        match self.open.last() {
+            Some(&(start, opening)) if opening != '{' => {
+                let message = format!("`{opening}` is never closed");
+                let line = self.line(position);
+                let expected = format!(
+                    "a matching `{}` before the `;` in line {line}",
+                    closing(opening)
+                );
+                self.report(start, message, expected);
+                None
+            }
+            _ => Some(()),
+        }
+    }
+
+    /// A character that stands for itself.
+    fn single(&mut self, position: usize, character: char) {
+        let place = self.at(position, character.len_utf8());
+        let mistake = match character {
+            '\'' => Diagnostic::new(
+                place,
+                "a prime is not part of the language",
+                "an operator or `;`",
+            )
+            .hint("write a y-derivative as dy(q); a perturbation needs no mark"),
+            '#' | '`' | '\\' | '$' | '@' | '~' | '?' => Diagnostic::new(
+                place,
                 format!("`{character}` is not part of the language"),
                 "an operator, a name or a number",
-            )),
-            _ if character.is_ascii()
-                || character.is_alphanumeric()
-                || character.is_whitespace() =>
-            {
-                // ² and ³ count as numeric for Unicode.
-                if let Some(hint) = foreign(character) {
-                    found.push(
-                        not_in_language(at(position, character.len_utf8()), character).hint(hint),
-                    );
-                }
-            }
+            ),
             _ => {
-                let location = at(position, character.len_utf8());
-                let hint = foreign(character).map(str::to_owned);
-                found.push(not_in_language(location, character).maybe_hint(hint));
+                let hint = FOREIGN.iter().find(|(foreign, _)| *foreign == character);
+                let is_plain = character.is_ascii()
+                    || character.is_alphanumeric()
+                    || character.is_whitespace();
+                // ² and ³ count as numeric for Unicode.
+                if is_plain && hint.is_none() {
+                    return;
+                }
+                let message = format!("`{character}` is not part of the language");
+                Diagnostic::new(place, message, "letters, digits and + - * / ^")
+                    .maybe_hint(hint.map(|(_, hint)| (*hint).to_owned()))
             }
+        };
+        self.found.push(mistake);
+    }
+
+    /// Reports what is open at the end of the file.
+    fn end(&mut self) {
+        if let Some((start, opening)) = self.open.pop() {
+            let message = format!("`{opening}` is never closed");
+            let expected = format!("a matching `{}` further down", closing(opening));
+            let hint = self.misplaced_brace();
+            let place = self.at(start, 1);
+            self.found
+                .push(Diagnostic::new(place, message, expected).maybe_hint(hint));
         }
     }
-    if let Some((start, opening)) = open.pop() {
-        let message = format!("`{opening}` is never closed");
-        let expected = format!("a matching `{}` further down", closing(opening));
-        found.push(Diagnostic::new(at(start, 1), message, expected));
+
+    /// The first pair of braces that are not indented alike: the missing or surplus one is likely between them.
+    fn misplaced_brace(&self) -> Option<String> {
+        let breaks = self.text.match_indices('\n').map(|(at, _)| at + 1);
+        let starts: Vec<usize> = std::iter::once(0).chain(breaks).collect();
+        let line = |position: usize| starts.partition_point(|&start| start <= position);
+        let indent = |line: usize| {
+            let text = self.text[starts[line - 1]..].bytes();
+            text.take(WIDEST_INDENT)
+                .take_while(|b| matches!(b, b' ' | b'\t'))
+                .count()
+        };
+        let is_askew = |&(start, end): &(usize, usize)| {
+            let (opening, closing) = (line(start), line(end));
+            let begins_line = starts[closing - 1] + indent(closing) == end;
+            opening != closing && begins_line && indent(opening) != indent(closing)
+        };
+        let mut pairs = self.pairs.clone();
+        pairs.sort_by_key(|&(_, end)| end);
+        let (start, end) = pairs.into_iter().find(is_askew)?;
+        Some(format!(
+            "the `}}` in line {} closes the `{{` in line {}, which is indented otherwise",
+            line(end),
+            line(start)
+        ))
     }
-    found
-}
 
-fn not_in_language(location: Location, character: char) -> Diagnostic {
-    let message = format!("`{character}` is not part of the language");
-    Diagnostic::new(location, message, "letters, digits and + - * / ^")
-}
-
-fn foreign(character: char) -> Option<&'static str> {
-    FOREIGN
-        .iter()
-        .find(|(c, _)| *c == character)
-        .map(|(_, hint)| *hint)
+    fn line(&self, position: usize) -> usize {
+        self.text[..position].matches('\n').count() + 1
+    }
 }
 
 fn closing(opening: char) -> char {

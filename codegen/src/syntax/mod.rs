@@ -8,10 +8,12 @@ mod block;
 mod expression;
 mod item;
 mod lexical;
+mod printable;
+mod tokens;
 pub mod tree;
 
 use crate::diagnostic::{Diagnostic, Location};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use syn::ext::IdentExt;
 use syn::parse::{ParseBuffer, ParseStream, Parser};
 use tree::{Formula, LawTree, ModelTree, Name};
@@ -21,32 +23,34 @@ const MOST_MISTAKES: usize = 200;
 
 /// Parses a `.model` file; `file` is its index in the list of sources.
 pub fn parse_model(file: usize, text: &str) -> (ModelTree, Vec<Diagnostic>) {
-    parse(file, text, Reader::model)
+    parse(file, text, |reader, input| reader.model(input))
 }
 
 /// Parses a `.law` file.
 pub fn parse_laws(file: usize, text: &str) -> (LawTree, Vec<Diagnostic>) {
-    parse(file, text, Reader::laws)
+    parse(file, text, |reader, input| reader.laws(input))
 }
 
 /// Parses `left = right`, or an expression alone, as it stands in a printed formula.
 pub fn parse_formula(text: &str) -> (Option<Formula>, Vec<Diagnostic>) {
-    parse(0, text, Reader::formula)
+    parse(0, text, |reader, input| reader.formula(input))
 }
 
 fn parse<T: Default>(
     file: usize,
     text: &str,
-    grammar: impl FnOnce(&Reader, ParseStream) -> T,
+    grammar: impl FnOnce(&Reader<'_>, ParseStream) -> T,
 ) -> (T, Vec<Diagnostic>) {
     let mistakes = lexical::check(file, text);
     if !mistakes.is_empty() {
         return (T::default(), mistakes);
     }
-    let reader = Reader {
+    let mut reader = Reader {
         file,
-        length: text.len(),
+        text,
+        ends: Vec::new(),
         mistakes: RefCell::new(Vec::new()),
+        depth: Cell::new(0),
     };
     let tokens: proc_macro2::TokenStream = match text.parse() {
         Ok(tokens) => tokens,
@@ -64,6 +68,11 @@ fn parse<T: Default>(
             );
         }
     };
+    let Some(ends) = tokens::token_ends(tokens.clone()) else {
+        let start = Location { file, range: 0..0 };
+        return (T::default(), vec![tokens::too_deep(start)]);
+    };
+    reader.ends = ends;
     let mut tree = T::default();
     let outcome = Parser::parse2(
         |input: ParseStream| {
@@ -80,15 +89,19 @@ fn parse<T: Default>(
 }
 
 /// One file being read.
-struct Reader {
+struct Reader<'a> {
     file: usize,
-    length: usize,
+    text: &'a str,
+    /// Where each token ends, in the order of the text.
+    ends: Vec<usize>,
     mistakes: RefCell<Vec<Diagnostic>>,
+    /// Expressions being read, one inside another.
+    depth: Cell<usize>,
 }
 
 type Parsed<T> = Result<T, Diagnostic>;
 
-impl Reader {
+impl Reader<'_> {
     fn report(&self, mistake: Diagnostic) {
         let mut mistakes = self.mistakes.borrow_mut();
         if mistakes.len() < MOST_MISTAKES {
@@ -105,7 +118,7 @@ impl Reader {
         let range = span.byte_range();
         // Past the last token, syn answers with an empty call-site span.
         let range = if range.is_empty() && range.start == 0 {
-            self.length..self.length
+            self.text.len()..self.text.len()
         } else {
             range
         };
@@ -152,6 +165,25 @@ impl Reader {
             location.range.end = location.range.start + 1;
         }
         Diagnostic::new(location, message, expected)
+    }
+
+    /// The mistake of a mark that is not there: at the end of the line that lacks it, where the next token
+    /// stands on another.
+    fn missing(&self, input: ParseStream, mark: &str, expected: &str) -> Diagnostic {
+        let next = self.here(input).range.start;
+        let before = self.ends.partition_point(|&end| end <= next);
+        let end = before.checked_sub(1).map(|last| self.ends[last]);
+        match end {
+            Some(end) if self.text.get(end..next).is_some_and(|t| t.contains('\n')) => {
+                let location = Location {
+                    file: self.file,
+                    range: end..end,
+                };
+                let message = format!("`{mark}` is missing at the end of this line");
+                Diagnostic::new(location, message, expected)
+            }
+            _ => self.unexpected(input, expected),
+        }
     }
 
     /// Consumes one token tree.
@@ -218,7 +250,7 @@ impl Reader {
         for expected in mark.chars() {
             match cursor.punct() {
                 Some((punct, rest)) if punct.as_char() == expected => cursor = rest,
-                _ => return Err(self.unexpected(input, &format!("`{mark}`"))),
+                _ => return Err(self.missing(input, mark, &format!("`{mark}`"))),
             }
         }
         for _ in mark.chars() {
@@ -297,14 +329,24 @@ impl Reader {
         Ok(())
     }
 
-    /// An optional doc string.
+    /// An optional doc string: one line, however many it is written over.
     fn doc(&self, input: ParseStream) -> String {
-        if input.peek(syn::LitStr)
-            && let Ok(text) = input.parse::<syn::LitStr>()
-        {
-            return text.value();
+        let location = self.here(input);
+        if !input.peek(syn::LitStr) {
+            return String::new();
         }
-        String::new()
+        let Ok(literal) = input.parse::<syn::LitStr>() else {
+            return String::new();
+        };
+        let text = literal.value();
+        if !text.contains(printable::is_unprintable) {
+            return text;
+        }
+        let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        if let Some(character) = line.chars().find(|&c| printable::is_unprintable(c)) {
+            self.report(printable::not_printable(location, character));
+        }
+        line
     }
 }
 

@@ -15,6 +15,29 @@ pub struct Name {
 pub struct Expression {
     pub kind: ExpressionKind,
     pub location: Location,
+    /// Expressions on the longest way down, this one included.
+    pub height: usize,
+}
+
+impl Expression {
+    pub fn new(kind: ExpressionKind, location: Location) -> Self {
+        let below = match &kind {
+            ExpressionKind::Number(_) | ExpressionKind::Name(_) => 0,
+            ExpressionKind::Negative(inner) | ExpressionKind::Modulus(inner) => inner.height,
+            ExpressionKind::Binary(_, left, right) => left.height.max(right.height),
+            ExpressionKind::Call(_, arguments) => {
+                arguments.iter().map(|a| a.height).max().unwrap_or(0)
+            }
+            ExpressionKind::Select(_, branches) => {
+                branches.iter().map(|(_, b)| b.height).max().unwrap_or(0)
+            }
+        };
+        Expression {
+            kind,
+            location,
+            height: below + 1,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -118,6 +141,8 @@ pub struct ParameterItem {
     /// `None` in a law file whose model must declare it.
     pub default: Option<ParameterDefault>,
     pub domain: ParameterDomain,
+    /// `whole`: it takes whole numbers alone.
+    pub whole: Option<Location>,
     pub doc: String,
 }
 

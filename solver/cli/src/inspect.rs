@@ -44,7 +44,7 @@ pub fn models(models: &[Arc<dyn Model>], json: bool) -> Result<()> {
 pub fn check(library: &Library, file: &Path) -> Result<()> {
     let sources = library.sources(file)?;
     let model: Arc<dyn Model> = Arc::new(taped(&sources)?);
-    check_closed_base(&model)?;
+    let notes = check_closed_base(&model)?;
     check_claims(&model)?;
     let structure = model.structure();
     let fields: Vec<&str> = structure.fields.iter().map(|f| f.name.as_str()).collect();
@@ -54,6 +54,9 @@ pub fn check(library: &Library, file: &Path) -> Result<()> {
         structure.name,
         fields.join(", ")
     );
+    for note in notes {
+        say!("note: {note}");
+    }
     Ok(())
 }
 
@@ -94,18 +97,28 @@ fn check_claims(model: &Arc<dyn Model>) -> Result<()> {
 /// Relative distances from the defaults at which a base state in closed form is tried.
 const SAMPLES: [f64; 3] = [0.0, 0.0732, -0.0568];
 
-/// A base state in closed form has to solve its balances at any parameters.
-fn check_closed_base(model: &Arc<dyn Model>) -> Result<()> {
+/// A base state in closed form has to solve its balances at any parameters. Returns what it satisfies but nearly at
+/// the defaults.
+fn check_closed_base(model: &Arc<dyn Model>) -> Result<Vec<String>> {
     let structure = model.structure();
+    let mut notes = Vec::new();
     if !structure.base.solved.is_empty() {
-        return Ok(());
+        return Ok(notes);
     }
     for sample in SAMPLES {
         let mut setup = Setup::new(model.clone(), 8);
         let mut shown = Vec::new();
         for (index, (id, info)) in structure.parameters.pairs().enumerate() {
             // Each by its own part, so that nothing cancels.
-            let moved = info.default * (1.0 + sample * (1.0 + 0.37 * index as f64).sin());
+            let moved = match info.whole {
+                true => {
+                    info.default
+                        + sample
+                            .partial_cmp(&0.0)
+                            .map_or(0.0, |side| f64::from(side as i8))
+                }
+                false => info.default * (1.0 + sample * (1.0 + 0.37 * index as f64).sin()),
+            };
             if info.choices.is_empty() && moved >= info.lower && moved <= info.upper {
                 setup.parameters.values[id] = moved;
                 shown.push(format!("{} = {moved}", info.name));
@@ -115,11 +128,14 @@ fn check_closed_base(model: &Arc<dyn Model>) -> Result<()> {
             0.0 => "the default parameters".to_owned(),
             _ => shown.join(", "),
         };
-        setup
+        let base = setup
             .base(None)
-            .map_err(|error| Error::input(format!("at {place}: {error}")))?;
+            .map_err(|error| Error::input(format!("{error} (at {place})")))?;
+        if sample == 0.0 {
+            notes = base.notes.clone();
+        }
     }
-    Ok(())
+    Ok(notes)
 }
 
 pub fn explain(model: &dyn Model, operator: Option<OperatorName>, format: Format) -> Result<()> {

@@ -58,6 +58,7 @@ fn sources_of(model: &dyn Model) -> Sources {
             .into_iter()
             .map(|(p, t)| (stem(&p), file((p, t))))
             .collect(),
+        unreadable: BTreeMap::new(),
     }
 }
 
@@ -86,6 +87,7 @@ fn from_text(text: String, laws: BTreeMap<String, String>) -> Result<Core> {
             text,
         },
         laws: laws.into_iter().map(own).collect(),
+        unreadable: BTreeMap::new(),
     };
     for (path, text) in library().models.iter().flat_map(|model| model.laws()) {
         let stem = Path::new(&path).file_stem().unwrap_or_default();
@@ -109,6 +111,7 @@ fn info(structure: &Structure) -> serde_json::Value {
             "default": default,
             "doc": p.doc,
             "choices": p.choices,
+            "whole": p.whole,
             "automatic": p.automatic,
         });
         json!([p.name, value])

@@ -1,12 +1,13 @@
 //! The models at hand: those that are built in, and any other from its file.
 
 use landau_codegen::build::read_sources;
-use landau_codegen::diagnostic::SourceFile;
+use landau_codegen::diagnostic::{SourceFile, shortened};
 use landau_codegen::expression::compile;
 use landau_codegen::{Sources, tape};
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{Expression, Model, TapeModel, nearest};
 use landau_solver::study::derived::{Derived, Wanted};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -35,7 +36,11 @@ pub fn sources(model: &dyn Model) -> Result<Sources> {
         stem.to_string_lossy().into_owned()
     };
     let laws = files.map(|file| (stem(&file.path), file)).collect();
-    Ok(Sources { spec, laws })
+    Ok(Sources {
+        spec,
+        laws,
+        unreadable: BTreeMap::new(),
+    })
 }
 
 /// An expression in the names of a model's spec, compiled for it.
@@ -46,7 +51,8 @@ pub fn expression(model: &dyn Model, text: &str) -> Result<Expression> {
     let state = model.structure().state();
     compile(&sources(model)?, state, text).map_err(|mistakes| {
         Error::input(format!(
-            "`{text}` is no expression of the model\n\n{mistakes}"
+            "`{}` is no expression of the model\n\n{mistakes}",
+            shortened(text)
         ))
     })
 }
@@ -104,7 +110,8 @@ impl Library {
         let near = nearest(name, names.iter().copied())
             .map_or(String::new(), |n| format!("; did you mean `{n}`?"));
         Err(Error::input(format!(
-            "there is no model `{name}`: built are {}; the path of a .model file is accepted too{near}",
+            "there is no model `{}`: built are {}; the path of a .model file is accepted too{near}",
+            shortened(name),
             names.join(", ")
         )))
     }

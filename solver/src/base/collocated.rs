@@ -140,6 +140,7 @@ impl Collocated<'_> {
             degree: self.degree,
             series: self.layout.columns.map(series),
             residual,
+            notes: Vec::new(),
         }
     }
 

@@ -13,7 +13,17 @@ pub(super) fn to(
     target: &Parameters,
     near: Option<&BaseState>,
 ) -> Result<BaseState> {
-    let start = match near {
+    let structure = effort.model.structure();
+    let steps = || {
+        structure
+            .parameters
+            .pairs()
+            .filter(|(_, info)| !info.is_continuous())
+    };
+    let is_connected = |state: &&BaseState| {
+        steps().all(|(id, _)| state.parameters.values[id] == target.values[id])
+    };
+    let start = match near.filter(is_connected) {
         Some(state) => state.clone(),
         None => at_defaults(effort, target)?,
     };
@@ -26,12 +36,13 @@ pub(super) fn to(
     walk(target, start, step)
 }
 
-/// The state at the defaults, the switches set as in `target`: there is nothing between two choices.
+/// The state at the defaults, switches and whole numbers set as in `target`: there is nothing between two of their
+/// values.
 pub(super) fn at_defaults(effort: &Effort, target: &Parameters) -> Result<BaseState> {
     let structure = effort.model.structure();
     let mut parameters = Parameters::defaults(structure);
     for (id, info) in structure.parameters.pairs() {
-        if !info.choices.is_empty() {
+        if !info.is_continuous() {
             parameters.values[id] = target.values[id];
         }
     }

@@ -1,6 +1,7 @@
 //! The base state: in closed form, or by Newton's method on the emitted residual.
 
 mod adjust;
+mod check;
 mod collocated;
 mod continuation;
 mod state;
@@ -12,6 +13,7 @@ use crate::error::{Error, Result};
 use crate::model::Model;
 use crate::parameters::Parameters;
 use crate::space::Matrices;
+use check::spec_line;
 use collocated::Trouble;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -109,9 +111,7 @@ fn fixed(
     let structure = model.structure();
     let space = state::space(model.as_ref(), parameters, &effort.matrices)?;
     if structure.base.solved.is_empty() {
-        let state = BaseState::closed(model, parameters, space);
-        state.check_closed()?;
-        return Ok(state);
+        return BaseState::closed(model, parameters, space).checked();
     }
     let start = near.filter(|state| state.case == parameters.case(structure));
     let state = match refine(effort, parameters, start, accuracy.tail) {
@@ -125,15 +125,15 @@ fn fixed(
     };
     let tail = state.tail();
     if tail > UNRESOLVED.max(accuracy.tail) {
+        let spec = spec_line(model.as_ref(), structure.lines.base);
         return Err(Error::computation(format!(
-            "the base state is not resolved with {} Chebyshev polynomials (relative tail {tail:.1e}); \
+            "{spec}: the base state is not resolved with {} Chebyshev polynomials (relative tail {tail:.1e}); \
              try a smaller interval or milder parameters",
             state.degree
         )));
     }
     state.check_ranges(tail)?;
-    state.check_closed()?;
-    Ok(state)
+    state.checked()
 }
 
 /// The state at rising degree until its coefficients have died out.
@@ -242,6 +242,7 @@ fn describe(model: &dyn Model, parameters: &Parameters, trouble: &Trouble, place
         })
         .collect();
     Error::BaseState {
+        spec: spec_line(model, structure.lines.base),
         trouble: format!("{place} ({trouble})"),
         parameters: values.join(", "),
     }

@@ -1,69 +1,14 @@
 //! A base state: Chebyshev series of the solved fields, closed forms of the others.
 
+use super::check::spec_line;
 use crate::error::{Error, Result};
 use crate::model::{
-    CaseId, End, FieldId, KernelId, Model, PointState, ResidualId, SolvedId, Structure, Table,
-    WithRounding, evaluate,
+    CaseId, End, FieldId, KernelId, Model, PointState, SolvedId, Structure, Table, evaluate,
 };
 use crate::parameters::Parameters;
 use crate::space::{Matrices, Place, Series, Space};
 use std::fmt;
 use std::sync::Arc;
-
-/// Places at which a closed base state is checked against its balances.
-const CHECKS: usize = 7;
-
-/// What a closed form leaves of a balance or a condition, relative to the terms it is made of.
-const TOLERANCE: f64 = 1e-9;
-
-/// The worst residual met.
-#[derive(Default)]
-struct Leftover {
-    /// Size over what is allowed.
-    excess: f64,
-    value: f64,
-    of: String,
-    place: f64,
-}
-
-impl Leftover {
-    fn add(&mut self, residual: WithRounding, of: impl Fn() -> String, place: f64) {
-        let allowed = TOLERANCE * residual.size;
-        let excess = match residual.value == 0.0 {
-            true => 0.0,
-            false => residual.value.abs() / allowed,
-        };
-        // What is no number is worse than any.
-        let excess = if excess.is_nan() {
-            f64::INFINITY
-        } else {
-            excess
-        };
-        if excess > self.excess {
-            *self = Leftover {
-                excess,
-                value: residual.value,
-                of: of(),
-                place,
-            };
-        }
-    }
-}
-
-/// The unexpanded residuals at the base state, whose jets are as large as `sizes` somewhere.
-fn residual(model: &dyn Model, id: ResidualId, point: &[f64], sizes: &[f64]) -> Vec<WithRounding> {
-    let structure = model.structure();
-    let jets = structure.residual_jets.iter().zip(sizes);
-    let jets: Vec<WithRounding> = jets
-        .map(|(jet, &size)| {
-            let value = structure.base_jet(*jet, point);
-            let size = size.max(value.abs());
-            WithRounding { value, size }
-        })
-        .collect();
-    let kernel = model.residual(id);
-    kernel.map_or_else(Vec::new, |kernel| kernel.evaluate(point, &jets))
-}
 
 /// X⁰(y), evaluated to any derivative that kernels ask for.
 #[derive(Clone)]
@@ -82,6 +27,8 @@ pub struct BaseState {
     pub series: Table<SolvedId, Series>,
     /// Largest residual of the discretised base problem, relative to its terms.
     pub residual: f64,
+    /// What of its balances and conditions it meets but nearly, in words.
+    pub notes: Vec<String>,
 }
 
 impl fmt::Debug for BaseState {
@@ -110,8 +57,9 @@ pub(super) fn space(
     if lower.is_finite() && upper.is_finite() && upper > lower {
         return Ok(Space::new(Some([lower, upper]), matrices.clone()));
     }
+    let spec = spec_line(model, structure.lines.coordinate);
     Err(Error::input(format!(
-        "the interval {lower}..{upper} is empty: its upper end must lie above its lower end"
+        "{spec}: the interval {lower}..{upper} is empty: its upper end must lie above its lower end"
     )))
 }
 
@@ -126,6 +74,7 @@ impl BaseState {
             degree: 0,
             series: Table::default(),
             residual: 0.0,
+            notes: Vec::new(),
         }
     }
 
@@ -184,59 +133,6 @@ impl BaseState {
         self.space.widened(self.series.iter())
     }
 
-    /// A base in closed form has to satisfy the balances, and what is given of it its wall conditions.
-    ///
-    /// # Errors
-    /// Names what is left of the worst of them, and where.
-    pub(super) fn check_closed(&self) -> Result<()> {
-        let (model, structure) = (self.model.as_ref(), self.structure());
-        let mut worst = Leftover::default();
-        let place = |check: usize| Place::at((check as f64 + 0.5) / CHECKS as f64);
-        let points: Vec<_> = (0..CHECKS)
-            .map(|check| self.at(place(check), 0.0))
-            .collect();
-        let y = structure.state().coordinate();
-        // What a closed form cancels does not show in its value: each jet is as uncertain as at its largest.
-        let sizes: Vec<f64> = structure
-            .residual_jets
-            .iter()
-            .map(|jet| {
-                let values = points.iter().map(|p| structure.base_jet(*jet, p).abs());
-                values.fold(0.0, f64::max)
-            })
-            .collect();
-        if structure.base.solved.is_empty() {
-            for point in &points {
-                let values = residual(model, ResidualId::Balances, point, &sizes);
-                for (name, value) in structure.balances.iter().zip(values) {
-                    worst.add(value, || format!("the balance `{name}`"), point[y]);
-                }
-            }
-        }
-        let checks = &structure.cases[self.case].base_checks;
-        for end in End::BOTH.into_iter().filter(|end| checks.contains(end)) {
-            let point = self.at_end(end);
-            let values = residual(model, ResidualId::BaseChecks(self.case), &point, &sizes);
-            for (value, _) in values.into_iter().zip(checks).filter(|(_, at)| **at == end) {
-                worst.add(value, || "its own condition".to_owned(), point[y]);
-            }
-        }
-        if worst.excess <= 1.0 {
-            return Ok(());
-        }
-        let place = structure.coordinate.as_ref();
-        let place = place.map_or(String::new(), |name| {
-            format!(" at {name} = {}", worst.place)
-        });
-        Err(Error::computation(match worst.value.is_finite() {
-            true => format!(
-                "the base state does not satisfy {}: residual {:.3e}{place}",
-                worst.of, worst.value
-            ),
-            false => format!("the base state has no value in {}{place}", worst.of),
-        }))
-    }
-
     /// Fields must stay in the ranges that the spec declares, but for the truncation error.
     pub(super) fn check_ranges(&self, truncation: f64) -> Result<()> {
         let structure = self.structure();
@@ -246,8 +142,10 @@ impl BaseState {
                 let value = structure.base_value(&point, field, 0);
                 let slack = (1e-9 + 100.0 * truncation) * (1.0 + value.abs());
                 if !(value >= info.lower - slack && value <= info.upper + slack) {
+                    let spec = spec_line(self.model.as_ref(), structure.lines.fields[field]);
                     return Err(Error::computation(format!(
-                        "the base state leaves the range of `{}`: {value:.6e} at {} = {}",
+                        "{spec}: the base state leaves the range of `{}`: {value:.6e} at {} = {}; try milder \
+                         parameters, or widen the range in `fields`",
                         info.name,
                         structure.coordinate.as_deref().unwrap_or("y"),
                         self.space.y(place)

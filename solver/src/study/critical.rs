@@ -268,6 +268,7 @@ pub struct Scan {
 /// # Errors
 /// A mode that can be found nowhere, a root that is not converged.
 pub fn scan(setup: &Setup, question: Question, progress: &dyn Progress) -> Result<Scan> {
+    question.axis.check_continuous(setup.model.structure())?;
     let sampler = Sampler { setup, question };
     let points: Vec<f64> = (0..SCAN)
         .map(|i| question.from + (question.to - question.from) * i as f64 / (SCAN - 1) as f64)

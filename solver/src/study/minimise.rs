@@ -54,6 +54,7 @@ pub fn minimise(
     range: (f64, f64),
     progress: &dyn Progress,
 ) -> Result<Critical> {
+    question.axis.check_continuous(setup.model.structure())?;
     progress.begin(SCAN + 1);
     let search = Search {
         setup,

@@ -25,12 +25,13 @@ pub mod verify;
 
 use crate::base::{self, BaseState};
 use crate::error::{Error, Result};
-use crate::model::{Model, ParameterId};
+use crate::model::{Model, ParameterId, Structure};
 use crate::parameters::Parameters;
 use crate::problem::Problem;
 use crate::space::Matrices;
 use crate::spectrum::EigenPair;
 use crate::weakly::{self, LandauPoint, Selection};
+use crate::words;
 use std::sync::Arc;
 
 /// A model with parameters and resolution: what the command line sets up.
@@ -73,6 +74,23 @@ impl Axis {
         }
         Ok(Axis::Parameter(parameter))
     }
+
+    /// Refuses a parameter that takes whole numbers alone, where values between two others are asked for.
+    ///
+    /// # Errors
+    /// Such a parameter.
+    pub fn check_continuous(self, structure: &Structure) -> Result<()> {
+        match self {
+            Axis::Parameter(id) if !structure.parameters[id].is_continuous() => {
+                let name = &structure.parameters[id].name;
+                Err(Error::input(format!(
+                    "`{name}` takes whole numbers: it cannot vary continuously; `sweep --over {name}=FROM:TO:COUNT` \
+                     goes through them"
+                )))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 impl Setup {
@@ -94,7 +112,8 @@ impl Setup {
     pub fn set(&mut self, assignments: &[String]) -> Result<()> {
         for assignment in assignments {
             let (name, value) = assignment.split_once('=').ok_or_else(|| {
-                Error::input(format!("--set {assignment}: --set accepts NAME=VALUE"))
+                let given = words::quoted(assignment);
+                Error::input(format!("--set {given}: --set accepts NAME=VALUE"))
             })?;
             self.parameters
                 .set_text(self.model.structure(), name.trim(), value.trim())?;

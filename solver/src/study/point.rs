@@ -60,6 +60,8 @@ pub struct PointReport {
     pub equation: AmplitudeEquation,
     /// Solved problems that are as good as singular, in words.
     pub small_divisors: Vec<String>,
+    /// What the base state satisfies but nearly, in words.
+    pub notes: Vec<String>,
 }
 
 impl PointReport {
@@ -123,6 +125,7 @@ impl PointReport {
             resonance,
             outputs: values,
             dc0: slopes,
+            notes: base.notes.clone(),
         })
     }
 
@@ -158,6 +161,7 @@ impl PointReport {
             "stable": self.stable(),
             "radius": self.equation.radius(),
             "small_divisors": self.small_divisors,
+            "notes": self.notes,
             "envelope": {
                 "dc0_dk": words::complex(self.envelope.slope),
                 "d2c0_dk2": words::complex(self.envelope.curvature),
@@ -377,6 +381,9 @@ impl fmt::Display for PointReport {
                 "\n  and {} more of them",
                 self.small_divisors.len() - NAMED
             )?;
+        }
+        for note in &self.notes {
+            write!(f, "\n  note: {note}")?;
         }
         Ok(())
     }

@@ -33,6 +33,8 @@ pub struct BaseReport {
     pub profiles: Vec<(String, Vec<f64>)>,
     /// How many of them are profiles.
     pub varying: usize,
+    /// What the base state satisfies but nearly, in words.
+    pub notes: Vec<String>,
 }
 
 impl BaseReport {
@@ -69,6 +71,7 @@ impl BaseReport {
             heights: places.iter().map(|&place| state.space.y(place)).collect(),
             profiles: structure.fields.ids().map(profile).collect(),
             varying: structure.profiles().len(),
+            notes: state.notes.clone(),
         })
     }
 
@@ -89,6 +92,7 @@ impl BaseReport {
             "degree": self.degree,
             "tail": words::number(self.tail),
             "residual": words::number(self.residual),
+            "notes": self.notes,
             (self.vertical()): self.heights,
             "profiles": self.profiles.iter().map(profile).collect::<Map<String, Value>>(),
         })
@@ -113,6 +117,9 @@ impl fmt::Display for BaseReport {
             for value in std::iter::once(*height).chain(values) {
                 write!(f, "{value:>16.9}")?;
             }
+        }
+        for note in &self.notes {
+            write!(f, "\nnote: {note}")?;
         }
         Ok(())
     }

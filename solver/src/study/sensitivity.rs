@@ -25,7 +25,7 @@ struct Partial {
     conditions: DVector<f64>,
 }
 
-/// dc0/dp for every parameter that is a number and not determined by the base.
+/// dc0/dp for every parameter that varies continuously and is not determined by the base.
 ///
 /// The operators' derivative is a fourth-order difference; modes are not differenced. A parameter that L, its
 /// conditions and the base state do not hold gives zero exactly. Automatic parameters follow their conditions
@@ -37,7 +37,7 @@ pub fn parameters(
 ) -> Vec<(ParameterId, Result<C64>)> {
     let structure = setup.model.structure();
     let numbers = structure.parameters.ids();
-    let numbers = numbers.filter(|&id| structure.parameters[id].choices.is_empty());
+    let numbers = numbers.filter(|&id| structure.parameters[id].is_continuous());
     let (automatic, free): (Vec<ParameterId>, Vec<ParameterId>) =
         numbers.partition(|&id| setup.parameters.automatic[id]);
     let partial = |&id: &ParameterId| partial(setup, base, pair, id, &automatic);

@@ -30,6 +30,30 @@ fn main() -> Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use landau_solver::study::Setup;
+
+    /// A model whose name is a word of Rust, two balances whose names differ in case alone, and a parameter that
+    /// takes whole numbers: c0 = r − k² − 1/m².
+    #[test]
+    fn names_of_any_kind() {
+        let models = super::models();
+        let model = models
+            .iter()
+            .find(|m| m.structure().name == "type")
+            .expect("the model");
+        let mut setup = Setup::new(model.clone(), 20);
+        for m in [1.0, 3.0] {
+            setup.set(&[format!("m={m}")]).expect("a whole number");
+            let base = setup.base(None).expect("a base state");
+            let found = setup
+                .point(&base, 0.3, landau_solver::weakly::Selection::Leading)
+                .expect("a Landau point");
+            let expected = 0.1 - 0.09 - 1.0 / (m * m);
+            assert!((found.c0.re - expected).abs() < 1e-11, "{}", found.c0);
+        }
+        assert!(setup.set(&["m=1.5".to_owned()]).is_err());
+    }
+
     #[test]
     fn coefficients_by_hand() {
         for r in [0.0, 0.1, 0.5] {

@@ -57,8 +57,26 @@ pub(super) struct Unreadable {
 
 type Read<T> = Result<T, Unreadable>;
 
+/// Bytes of a formula.
+const LONGEST_FORMULA: usize = 1 << 14;
+/// Brackets, fractions and roots inside one another.
+const DEEPEST_NESTING: usize = 64;
+/// Factors of one product.
+const MOST_FACTORS: usize = 256;
+/// Bytes of what a formula is read as.
+const LONGEST_READING: usize = 1 << 18;
+
 /// Reads a formula.
 pub(super) fn read(text: &str, vocabulary: &Vocabulary) -> Read<Reading> {
+    if text.len() > LONGEST_FORMULA {
+        return Err(Unreadable {
+            message: format!(
+                "a formula of {} bytes; at most {LONGEST_FORMULA}",
+                text.len()
+            ),
+            range: 0..0,
+        });
+    }
     let tokens = tokens(text);
     let mut reader = Reader {
         tokens: &tokens,
@@ -67,6 +85,7 @@ pub(super) fn read(text: &str, vocabulary: &Vocabulary) -> Read<Reading> {
         vocabulary,
         unclosed: 0,
         perturbed: false,
+        depth: 0,
     };
     let mut sides = vec![reader.sum()?];
     while reader.sign('=') || reader.command("equiv") {
@@ -82,7 +101,9 @@ pub(super) fn read(text: &str, vocabulary: &Vocabulary) -> Read<Reading> {
         texts.push(match (side, operand) {
             (Value::Plain(text), None) => text,
             (Value::Plain(text), Some(field)) => format!("({text})*{field}"),
-            (Value::Acting(operator), Some(field)) => operator.on(field),
+            (Value::Acting(operator), Some(field)) => {
+                reader.applied(&operator, field, &(0..text.len()))?
+            }
             (Value::Acting(_), None) => {
                 return Err(reader.unreadable("this operator acts on nothing", 0..text.len()));
             }
@@ -102,6 +123,8 @@ struct Reader<'a> {
     unclosed: usize,
     /// Whether a perturbation has been named.
     perturbed: bool,
+    /// Sums being read, one inside another.
+    depth: usize,
 }
 
 impl<'a> Reader<'a> {
@@ -187,8 +210,29 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// ± term ± term …
+    /// What an operator makes of an operand, which it may repeat.
+    fn applied(&self, operator: &Operator, operand: &str, range: &Range<usize>) -> Read<String> {
+        if operator.length(operand.len()) > LONGEST_READING {
+            let message = "these operators multiply out to too many terms";
+            return Err(self.unreadable(message, range.clone()));
+        }
+        Ok(operator.on(operand))
+    }
+
+    /// A sum, at most [`DEEPEST_NESTING`] of them inside one another.
     fn sum(&mut self) -> Read<Value> {
+        if self.depth > DEEPEST_NESTING {
+            let message = format!("nested too deeply; at most {DEEPEST_NESTING} levels");
+            return Err(self.unreadable(&message, self.here()));
+        }
+        self.depth += 1;
+        let sum = self.terms();
+        self.depth -= 1;
+        sum
+    }
+
+    /// ± term ± term …
+    fn terms(&mut self) -> Read<Value> {
         let mut terms = Vec::new();
         loop {
             let negative = match (self.sign('+'), self.sign('-')) {
@@ -251,6 +295,13 @@ impl<'a> Reader<'a> {
         if factors.is_empty() {
             return Err(self.unreadable("a term is missing here", start));
         }
+        if factors.len() > MOST_FACTORS {
+            let message = format!(
+                "a product of {} factors; at most {MOST_FACTORS}",
+                factors.len()
+            );
+            return Err(self.unreadable(&message, start));
+        }
         let (mut right, mut waiting): (Vec<String>, Option<Operator>) = (Vec::new(), None);
         for factor in factors.into_iter().rev() {
             match (factor, waiting.take()) {
@@ -262,7 +313,7 @@ impl<'a> Reader<'a> {
                     waiting = Some(Operator::Composed(Box::new(outer), Box::new(inner)));
                 }
                 (Value::Acting(operator), None) => match right.first_mut() {
-                    Some(next) => *next = operator.on(next),
+                    Some(next) => *next = self.applied(&operator, next, &start)?,
                     None => waiting = Some(operator),
                 },
             }

@@ -3,6 +3,9 @@
 use super::token::{Kind, Token};
 use super::{Read, Reader};
 
+/// Order of a derivative that a formula has use for.
+const HIGHEST_ORDER: usize = 64;
+
 /// Something that waits for what it acts on.
 pub(super) enum Operator {
     /// ∂ by one coordinate after another.
@@ -25,6 +28,31 @@ pub(super) enum Value {
 }
 
 impl Operator {
+    /// About how many bytes [`Operator::on`] writes for an operand of so many.
+    pub(super) fn length(&self, operand: usize) -> usize {
+        match self {
+            Operator::Derivative(coordinates) => operand.saturating_add(4 * coordinates.len()),
+            Operator::Modulus => operand.saturating_add(8),
+            Operator::Advection(components) => {
+                let names: usize = components.iter().map(|(q, u)| q.len() + u.len() + 7).sum();
+                operand
+                    .saturating_mul(components.len())
+                    .saturating_add(names)
+            }
+            Operator::Scaled(factor, operator) => {
+                operator.length(operand).saturating_add(factor.len() + 1)
+            }
+            Operator::Composed(outer, inner) => outer.length(inner.length(operand)),
+            Operator::Sum(terms) => {
+                let lengths = terms.iter().map(|(_, term)| match term {
+                    Value::Plain(text) => operand.saturating_add(text.len() + 4),
+                    Value::Acting(operator) => operator.length(operand).saturating_add(3),
+                });
+                lengths.fold(2, usize::saturating_add)
+            }
+        }
+    }
+
     /// In the language of the spec, on an operand.
     pub(super) fn on(&self, operand: &str) -> String {
         match self {
@@ -128,7 +156,7 @@ impl Reader<'_> {
                         ..
                     },
                     after @ ..,
-                ] => (times.parse().ok()?, after),
+                ] => (times.parse().ok().filter(|&n| n <= HIGHEST_ORDER)?, after),
                 after => (1, after),
             };
             coordinates.extend(vec![name; times]);

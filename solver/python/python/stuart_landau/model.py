@@ -82,7 +82,7 @@ class Model:
         info = json.loads(core.info())
         self.name: str = info["name"]
         self.title: str = info["title"]
-        #: By name: default, doc, choices, and whether "auto" is accepted.
+        #: By name: default, doc, choices, whether it takes whole numbers alone, and whether "auto" is accepted.
         self.parameters: dict[str, dict[str, Any]] = dict(info["parameters"])
         #: Documentation by name.
         self.fields: dict[str, str] = dict(info["fields"])
