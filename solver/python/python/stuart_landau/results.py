@@ -118,12 +118,15 @@ class Base(Result):
         self.profiles = {name: _array(data["profiles"][name]) for name in model.fields}
         #: Size of the last Chebyshev coefficients over the largest.
         self.tail: float = data["tail"]
+        #: What a closed form satisfies but nearly, in words.
+        self.notes: list[str] = data["notes"]
 
     def __getitem__(self, field: str) -> np.ndarray:
         return self.profiles[field]
 
     def _rows(self) -> list[tuple[str, str]]:
-        return [(name, f"{v.min():.6g} … {v.max():.6g}") for name, v in self.profiles.items()]
+        rows = [(name, f"{v.min():.6g} … {v.max():.6g}") for name, v in self.profiles.items()]
+        return rows + [("note", text) for text in self.notes]
 
     def to_xarray(self) -> Any:
         """Profiles over the cross-stream coordinate."""
@@ -213,6 +216,8 @@ class Point(Result):
         #: Self and cross coefficient of a wave in a mirror-symmetric model, and which wave is stable.
         self.waves: dict[str, Any] | None = data.get("waves")
         self.small_divisors: list[str] = data["small_divisors"]
+        #: What the base state satisfies but nearly, in words.
+        self.notes: list[str] = data["notes"]
 
     def __getattr__(self, name: str) -> complex:
         data = self.__dict__.get("data", {})
@@ -231,7 +236,7 @@ class Point(Result):
         rows.append(("bifurcation", self.bifurcation))
         rows += [(_order(o), f"{a:.8g}") for o, a in self.amplitudes.items() if a is not None]
         rows.append(("normalised by", self.model.normalization))
-        rows += [("note", divisor) for divisor in self.small_divisors]
+        rows += [("note", text) for text in self.small_divisors + self.notes]
         return rows
 
     def _repr_latex_(self) -> str:
