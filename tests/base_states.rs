@@ -147,12 +147,6 @@ fn refusals_have_a_place() {
             "r=1",
             "m.model:6: the base state does not satisfy the balance `first`",
         ),
-        (
-            "r*8",
-            "",
-            "r=10",
-            "m.model:3: the base state leaves the range of `u`",
-        ),
         ("r", "", "H=-1", "m.model:1: the interval 0..-1 is empty"),
         (
             "r*exp(u)",

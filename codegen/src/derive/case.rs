@@ -1,6 +1,7 @@
 //! One case: the boundary conditions under one combination of the structural switches, the adjoint
 //! conditions that follow from them, and what closes the problem at k = 0.
 
+use super::base_wall::{BaseCheck, base_checks, base_conditions};
 use super::boundary::{Combination, Simplifier, as_condition, conjugate, demands, reduce};
 use super::closure::{self, CaseClosure};
 use super::wall::{
@@ -9,9 +10,8 @@ use super::wall::{
 use super::{Deriver, regular};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::formula::{Arrangement, Mark, plain};
-use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Node};
+use crate::graph::{BalanceId, Graph, Jet};
 use crate::model::{Closure, Condition, End};
-use std::cmp::Reverse;
 
 /// A condition on the adjoint fields: Σ symbol · jets = 0.
 #[derive(Clone, Debug)]
@@ -22,17 +22,6 @@ pub struct AdjointCondition {
     pub combination: Combination<BalanceId>,
     /// The balance whose adjoint field it is solved for.
     pub balance: BalanceId,
-}
-
-/// A condition that the base state, being in closed form, has to meet.
-#[derive(Clone, Debug)]
-pub struct BaseCheck {
-    /// Where it holds.
-    pub end: End,
-    /// In terms of the full state.
-    pub residual: Id,
-    /// Where the spec says so.
-    pub location: Location,
 }
 
 /// One combination of the structural switches.
@@ -174,179 +163,6 @@ fn check_count(
         )),
     );
     None
-}
-
-/// The solved field that a condition of the base state is about: the one with the highest derivative in it, and of
-/// several the first.
-fn solved_field(deriver: &Deriver, problem: &CaseProblem, residual: Id) -> Option<FieldId> {
-    let mut highest: Option<(u8, Reverse<FieldId>)> = None;
-    for node in deriver.graph.topological(&[residual]) {
-        let fields: Vec<(u8, FieldId)> = match deriver.graph.node(node) {
-            Node::Base(field, order) => vec![(*order, *field)],
-            Node::BaseLaw(atom) => {
-                let depends = &deriver.dependence[atom.law];
-                let fields = depends.ids().filter(|&f| depends[f]);
-                fields.map(|field| (atom.y, field)).collect()
-            }
-            _ => Vec::new(),
-        };
-        let solved = fields
-            .into_iter()
-            .filter(|(_, f)| problem.solved.contains(f));
-        highest = highest.max(solved.map(|(order, field)| (order, Reverse(field))).max());
-    }
-    highest.map(|(_, field)| field.0)
-}
-
-/// Base conditions: those of the `base` block, and those of `boundary` about fields that the
-/// `base` block leaves alone at that end.
-fn base_conditions(
-    deriver: &mut Deriver,
-    problem: &CaseProblem,
-    written: &[&Condition],
-    written_base: &[&Condition],
-    mistakes: &mut Vec<Diagnostic>,
-) -> Option<Vec<BaseCondition>> {
-    let mut found: Vec<BaseCondition> = Vec::new();
-    let mut replaced: Vec<(End, FieldId)> = Vec::new();
-    for condition in written_base {
-        let end = condition.end;
-        let residual = deriver.base_part(condition.residual)?;
-        if let Some(field) = solved_field(deriver, problem, residual) {
-            replaced.push((end, field));
-            found.push(BaseCondition { end, residual });
-        }
-    }
-    for condition in written {
-        let end = condition.end;
-        let residual = deriver.base_part(condition.residual)?;
-        let field = solved_field(deriver, problem, residual);
-        if field.is_some_and(|field| !replaced.contains(&(end, field))) {
-            found.push(BaseCondition { end, residual });
-        }
-    }
-    let integrals = deriver.model.base.integrals.len()
-        + deriver.model.mean.iter().filter(|closure| {
-            matches!(closure, crate::model::Closure::Unknown { field, .. } if problem.solved.contains(field))
-        }).count();
-    let given = found.len()
-        + if problem.solved.is_empty() {
-            0
-        } else {
-            integrals
-        };
-    if given != problem.base_conditions {
-        let trouble = if given < problem.base_conditions {
-            "few"
-        } else {
-            "many"
-        };
-        let message = format!("the base state has too {trouble} conditions: {given}");
-        let expected = format!(
-            "{} conditions, at the ends and on integrals together",
-            problem.base_conditions
-        );
-        let bound = found
-            .iter()
-            .flat_map(|c| base_fields(deriver, c.residual))
-            .collect::<Vec<_>>();
-        let open = constants(deriver, problem, &bound);
-        let hint = match open.as_slice() {
-            [name, ..] if given < problem.base_conditions => format!(
-                "`{name}` enters the base balances by its derivatives alone: fix its constant by \
-                 `integral({name}) = 0`, or by its value at an end"
-            ),
-            _ => "conditions of `boundary` count where the `base` block says nothing of the field"
-                .to_owned(),
-        };
-        let place = deriver.model.base.location.clone();
-        mistakes.push(Diagnostic::new(place, message, expected).hint(hint));
-        return None;
-    }
-    Some(found)
-}
-
-/// Solved fields of which the base balances hold derivatives alone, and no condition of the base anything.
-fn constants(deriver: &Deriver, problem: &CaseProblem, bound: &[FieldId]) -> Vec<String> {
-    let solved = problem.solved.iter().filter(|&&field| {
-        let valued = problem.balances.iter().any(|form| {
-            let base = form.terms.get(&Vec::new());
-            base.is_some_and(|&id| {
-                deriver.graph.any(id, |node| match node {
-                    Node::Base(f, order) => *f == field && *order == 0,
-                    Node::BaseLaw(atom) => deriver.dependence[atom.law][field],
-                    _ => false,
-                })
-            })
-        });
-        !valued && !deriver.uniform[field] && !bound.contains(&field)
-    });
-    solved
-        .map(|&f| deriver.model.fields[f].name.clone())
-        .collect()
-}
-
-/// Conditions of the `base` block, and those of `boundary` that it does not replace, about fields that are all
-/// given in closed form.
-fn base_checks(
-    deriver: &mut Deriver,
-    problem: &CaseProblem,
-    written: &[&Condition],
-    written_base: &[&Condition],
-) -> Vec<BaseCheck> {
-    let fields = |graph: &Graph, id: Id| -> Vec<FieldId> {
-        let nodes = graph.topological(&[id]).into_iter();
-        let mut fields: Vec<FieldId> = nodes
-            .filter_map(|node| match graph.node(node) {
-                Node::Jet(jet) => Some(jet.of),
-                _ => None,
-            })
-            .collect();
-        fields.dedup();
-        fields
-    };
-    let mut found = Vec::new();
-    let own = written_base.iter().map(|c| (c, true));
-    for (condition, own) in own.chain(written.iter().map(|c| (c, false))) {
-        let named = fields(deriver.graph, condition.residual);
-        let replaced = written_base.iter().any(|other| {
-            other.end == condition.end
-                && fields(deriver.graph, other.residual)
-                    .iter()
-                    .any(|f| named.contains(f))
-        });
-        let solved = deriver.base_part(condition.residual).is_none_or(|base| {
-            base_fields(deriver, base)
-                .iter()
-                .any(|f| problem.solved.contains(f))
-        });
-        if !solved && (own || !replaced) {
-            found.push(BaseCheck {
-                end: condition.end,
-                residual: condition.residual,
-                location: condition.location.clone(),
-            });
-        }
-    }
-    found
-}
-
-/// Fields whose base values an expression holds (through laws too).
-fn base_fields(deriver: &Deriver, id: Id) -> Vec<FieldId> {
-    let mut fields = Vec::new();
-    for node in deriver.graph.topological(&[id]) {
-        match deriver.graph.node(node) {
-            Node::Base(field, _) => fields.push(*field),
-            Node::BaseLaw(atom) => {
-                let depends = &deriver.dependence[atom.law];
-                fields.extend(depends.ids().filter(|&f| depends[f]));
-            }
-            _ => {}
-        }
-    }
-    fields.sort_unstable();
-    fields.dedup();
-    fields
 }
 
 /// The adjoint conditions, or why no set of them independent of the eigenvalue exists.

@@ -3,6 +3,7 @@
 //! Each pass is a function from one type to the next; [`derive()`] shows the whole of it.
 
 mod base;
+mod base_wall;
 mod boundary;
 mod case;
 mod check;
@@ -18,8 +19,9 @@ mod value;
 mod wall;
 
 pub use base::BaseRow;
+pub use base_wall::BaseCheck;
 pub use boundary::{Combination, Symbol};
-pub use case::{AdjointCondition, BaseCheck, Case};
+pub use case::{AdjointCondition, Case};
 pub use closure::CaseClosure;
 pub use linear::{AdjointTerm, DirectTerm, Term};
 pub use offsets::Offsets;

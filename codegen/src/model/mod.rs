@@ -6,6 +6,7 @@ mod declaration;
 mod formula;
 mod import;
 mod mistake;
+mod operation;
 mod parameter;
 mod resolve;
 mod scope;

@@ -342,7 +342,9 @@ impl Reader<'_> {
         if !text.contains(printable::is_unprintable) {
             return text;
         }
-        let line = text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let words = text.split([' ', '\n', '\r', '\t']);
+        let line = words.filter(|w| !w.is_empty()).collect::<Vec<_>>();
+        let line = line.join(" ");
         if let Some(character) = line.chars().find(|&c| printable::is_unprintable(c)) {
             self.report(printable::not_printable(location, character));
         }
