@@ -220,6 +220,15 @@ fn links_lead_nowhere() {
         &["base", "rayleigh_benard", "--plot", &svg, "--out", &svg],
         "a.svg",
     );
+    let drawn = [&SWEEP[..], &["--out", &svg, "--plot", &svg]].concat();
+    assert!(refused(&drawn, "a.svg").err.contains("twice"));
+    let share = folder.path("share");
+    done(&[&SWEEP[..], &["--out", &share, "--shard", "1/1"]].concat());
+    let before = fs::read(&share).expect("a share");
+    refused(&["merge", &share, "--out", &share, "--force"], "share");
+    let way_round = folder.path("./share");
+    refused(&["merge", &share, "--out", &way_round, "--force"], "share");
+    assert_eq!(fs::read(&share).expect("a share"), before);
     fs::create_dir(folder.path("a.npz")).expect("a folder");
     let answer = refused(
         &["base", "rayleigh_benard", "--out", &folder.path("a.npz")],

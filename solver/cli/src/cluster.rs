@@ -3,6 +3,7 @@
 use crate::arguments::{Common, MergeOptions, SweepOptions};
 use crate::asked::resumed;
 use crate::interrupt::{self, Kept};
+use crate::outputs;
 use crate::progress::Bar;
 use landau_report::data::table;
 use landau_solver::error::{Error, Result};
@@ -11,6 +12,7 @@ use landau_solver::study::journal_path;
 use landau_solver::study::shard::{self, Share};
 use landau_solver::study::sweep::Sweep;
 use serde_json::json;
+use std::path::PathBuf;
 
 /// The share that is asked for: `I/N`, or `slurm` for that of the task of a job array.
 ///
@@ -58,7 +60,7 @@ pub fn run_share(sweep: &Sweep, text: &str, options: &SweepOptions, common: &Com
 
 /// Puts shares together.
 pub fn merge(options: &MergeOptions) -> Result<()> {
-    destination(&options.out)?;
+    outputs::check_apart(&options.out, options.shards.iter().map(PathBuf::as_path))?;
     let merged = shard::merge(&options.shards)?;
     table::write_merged(&options.out, &merged, Overwrite::forced(options.force))?;
     say!("{} shares: {}", options.shards.len(), options.out.display());

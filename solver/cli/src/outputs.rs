@@ -3,7 +3,7 @@
 use landau_report::data::FORMATS;
 use landau_report::figure::is_picture;
 use landau_solver::error::{Error, Result};
-use landau_solver::file::{Overwrite, check_replaceable};
+use landau_solver::file::{Overwrite, check_replaceable, destination};
 use std::path::{Path, PathBuf};
 
 /// Refuses files that a command must not write: two under one name, and those that Landau did not write, unless
@@ -14,14 +14,43 @@ use std::path::{Path, PathBuf};
 pub fn check<'p>(paths: impl IntoIterator<Item = &'p Path>, overwrite: Overwrite) -> Result<()> {
     let mut targets: Vec<PathBuf> = Vec::new();
     for path in paths {
-        let target = check_replaceable(path, overwrite)?;
+        check_replaceable(path, overwrite)?;
+        let target = place(path)?;
         if targets.contains(&target) {
-            return Err(Error::input(format!(
-                "{} is named twice: one file would replace the other",
-                path.display()
-            )));
+            return Err(named_twice(path));
         }
         targets.push(target);
+    }
+    Ok(())
+}
+
+/// Where a file stands or will stand, whichever way its folder is written.
+fn place(path: &Path) -> Result<PathBuf> {
+    let target = destination(path)?;
+    let folder = target
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new(".")).canonicalize();
+    let name = target.file_name().unwrap_or_default();
+    Ok(folder.map_or_else(|_| target.clone(), |folder| folder.join(name)))
+}
+
+fn named_twice(path: &Path) -> Error {
+    Error::input(format!(
+        "{} is named twice: one file would replace the other",
+        path.display()
+    ))
+}
+
+/// Refuses a result that would replace another file of the same command.
+///
+/// # Errors
+/// `out` is one of `files`, perhaps through a link; see [`destination`].
+pub fn check_apart<'p>(out: &Path, files: impl IntoIterator<Item = &'p Path>) -> Result<()> {
+    let target = place(out)?;
+    let mut files = files.into_iter();
+    if files.any(|file| place(file).is_ok_and(|place| place == target)) {
+        return Err(named_twice(out));
     }
     Ok(())
 }

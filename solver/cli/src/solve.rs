@@ -250,6 +250,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
     let overwrite = Overwrite::forced(options.force);
     outputs::check_picture(options.plot.as_deref())?;
     outputs::check(options.plot.as_deref(), overwrite)?;
+    outputs::check_apart(&options.out, options.plot.as_deref())?;
     let target = table::check(&options.out, &sweep.identity(), overwrite)?;
     interrupt::keeping(Kept::Journal(journal_path(&target)));
     let bar = Bar::new("sweeping");

@@ -93,7 +93,7 @@ impl SweepIdentity {
             near: sweep.near.map(|c| [c.re, c.im]),
             columns: sweep.derived.iter().map(|d| d.name.clone()).collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            build: format!("{}-{}", crate::BUILD, setup.model.generator()),
+            build: setup.build(),
         }
     }
 

@@ -129,6 +129,11 @@ impl Setup {
         format!("{hash:016x}")
     }
 
+    /// The build of the solver and of the generator that made the model's kernels: digits may depend on it.
+    pub fn build(&self) -> String {
+        format!("{}-{}", crate::BUILD, self.model.generator())
+    }
+
     /// The resolution to collocate with; nothing without a cross-stream coordinate.
     pub fn effective_resolution(&self) -> Option<usize> {
         let coordinate = self.model.structure().coordinate.as_ref();

@@ -29,6 +29,7 @@ pub fn attributes(
         number("resolution", setup.resolution as f64),
         text("normalization", &structure.amplitude.description),
         text("landau_version", env!("CARGO_PKG_VERSION")),
+        text("landau_build", &setup.build()),
     ];
     list.extend(k.map(|k| number("k", k)));
     list.extend(amplitude.map(|amplitude| number("amplitude", amplitude)));
