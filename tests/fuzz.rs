@@ -1,9 +1,16 @@
-//! Any text gives a diagnostic or a model: no panic, no hang.
+//! Any text gives a diagnostic or a model, any study a message or a report: no panic, no hang.
 
+use crate::mistakes::small;
+use crate::support::root;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::{Sources, generate};
+use landau_report::library::Library;
+use landau_report::reproduce::{Formulas, Provenance, Study, Workshop};
+use landau_solver::study::Silent;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
+use std::fs;
+use std::time::{Duration, Instant};
 
 fn read(text: String) {
     let spec = SourceFile {
@@ -136,4 +143,90 @@ fn hostile_specs_end_quickly() {
         Ok(_) => panic!("a circle of laws was accepted"),
     };
     assert!(said.contains("defined by itself"), "{said}");
+}
+
+/// The studies that ship, with one line left out or one number replaced: accepted or refused in bounded time, and what is
+/// accepted of a small study is worked through, without a panic.
+#[test]
+fn damaged_studies_end_quickly() {
+    let library = Library {
+        models: landau_spec::models(),
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let studies = root().join("spec/studies");
+    for name in ["rolls.model", "vibrated_disks.model", "clever_busse_1974.csv"] {
+        fs::copy(studies.join(name), folder.path().join(name)).expect("copied");
+    }
+    let read = |name: &str| fs::read_to_string(studies.join(name)).expect(name);
+    let path = folder.path().join("study.toml");
+    let attempt = |text: &str, name: &str, worked_through: bool| -> bool {
+        fs::write(&path, text).expect("written");
+        let provenance = Provenance {
+            command: String::new(),
+            date: String::new(),
+            commit: None,
+        };
+        let began = Instant::now();
+        let accepted = Study::read(&path).is_ok_and(|study| {
+            let shop = Workshop::new(&library, &study, &folder.path().join(name), provenance);
+            shop.is_ok_and(|shop| {
+                if worked_through {
+                    let _ = shop.run(&Formulas::default(), &Silent);
+                }
+                true
+            })
+        });
+        assert!(began.elapsed() < Duration::from_secs(30), "{text}");
+        accepted
+    };
+    let mut accepted = 0;
+    for shipped in ["shukla2014.toml", "schlueter1965.toml"] {
+        for text in damaged(&read(shipped)) {
+            accepted += usize::from(attempt(&text, "report", false));
+        }
+    }
+    for (index, text) in damaged(&small()).iter().enumerate() {
+        accepted += usize::from(attempt(text, &format!("report{index}"), true));
+    }
+    assert!(accepted > 20, "{accepted}");
+}
+
+/// A study with every n-th line left out, and with every n-th number replaced.
+fn damaged(text: &str) -> Vec<String> {
+    const LEFT_OUT: usize = 60;
+    const REPLACED: usize = 60;
+    let lines: Vec<&str> = text.lines().collect();
+    let step = (lines.len() / LEFT_OUT).max(1);
+    let left_out = (0..lines.len()).step_by(step).map(|at| {
+        let kept = lines.iter().enumerate().filter(|(i, _)| *i != at);
+        kept.map(|(_, line)| *line).collect::<Vec<_>>().join("\n")
+    });
+    let mut list: Vec<String> = left_out.collect();
+    let numbers: Vec<(usize, usize)> = numbers(text);
+    let values = ["0", "-1", "nan", "inf", "1e300", "-1e-300", "1000000000", "0.5"];
+    let step = (numbers.len() / REPLACED).max(1);
+    for (count, (start, end)) in numbers.iter().step_by(step).enumerate() {
+        let value = values[count % values.len()];
+        list.push(format!("{}{value}{}", &text[..*start], &text[*end..]));
+    }
+    list
+}
+
+/// Where the numbers of a text stand.
+fn numbers(text: &str) -> Vec<(usize, usize)> {
+    let bytes = text.as_bytes();
+    let part = |b: u8| b.is_ascii_digit() || matches!(b, b'.' | b'-' | b'e');
+    let mut list = Vec::new();
+    let mut at = 0;
+    while at < bytes.len() {
+        let starts = bytes[at].is_ascii_digit() && (at == 0 || matches!(bytes[at - 1], b' ' | b'['));
+        if !starts {
+            at += 1;
+            continue;
+        }
+        let end = (at..bytes.len()).find(|&i| !part(bytes[i])).unwrap_or(bytes.len());
+        list.push((at, end));
+        at = end;
+    }
+    list
 }

@@ -113,7 +113,7 @@ fn a_study_becomes_a_report() {
         "printed digits are kept: {printed}"
     );
     assert!(
-        printed.contains("fails: The upper onset lies beyond 0.18"),
+        printed.contains("not met at 0.18: 0.17454: The upper onset lies beyond 0.18"),
         "{printed}"
     );
     let read = |name: &str| fs::read_to_string(out.join(name)).expect(name);
@@ -161,7 +161,7 @@ fn a_study_becomes_a_report() {
         .iter()
         .map(|c| c["verdict"].as_str().expect("a verdict"))
         .collect();
-    assert_eq!(verdicts, ["holds", "fails", "undecided"]);
+    assert_eq!(verdicts, ["holds", "not met", "undecided"]);
     let table = read("figure1-1.csv");
     let header = table.lines().next().expect("a header");
     assert_eq!(

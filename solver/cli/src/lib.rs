@@ -23,9 +23,9 @@ mod solve;
 use arguments::{Arguments, Command, Common};
 use clap::Parser;
 use landau_report::library::Library;
-use landau_solver::error::{Error, Result};
+use landau_solver::error::Result;
 use landau_solver::model::Model;
-use landau_solver::study::Setup;
+use landau_solver::study::{Setup, check_resolution};
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -157,12 +157,7 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
 /// A model with the parameters and the resolution that are asked for.
 fn setup(library: &Library, name: &str, common: &Common) -> Result<Setup> {
     let model = library.model(name)?;
-    if !(4..=1000).contains(&common.resolution) {
-        return Err(Error::input(format!(
-            "-M {} is out of range: -M accepts 4 to 1000",
-            common.resolution
-        )));
-    }
+    check_resolution(common.resolution)?;
     let mut setup = Setup::new(model, common.resolution);
     setup.set(&common.set)?;
     Ok(setup)

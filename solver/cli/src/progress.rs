@@ -2,6 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use landau_solver::study::Progress;
+use std::io::Write;
 
 /// How far the work is.
 pub struct Bar(ProgressBar);
@@ -27,6 +28,15 @@ impl Progress for Bar {
 
     fn advance(&self, steps: usize) {
         self.0.inc(steps as u64);
+    }
+
+    fn done(&self, what: &str) {
+        if self.0.is_hidden() {
+            // Nobody may be reading any more, which is no reason to stop.
+            let _ = writeln!(std::io::stderr(), "{what}");
+        } else {
+            self.0.println(what);
+        }
     }
 
     fn end(&self) {

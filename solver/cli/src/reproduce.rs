@@ -5,7 +5,7 @@ use crate::inspect;
 use crate::interrupt::{self, Kept};
 use crate::progress::Bar;
 use landau_report::library::Library;
-use landau_report::reproduce::{Errata, Provenance, Study, Verdict, Workshop, beside};
+use landau_report::reproduce::{Errata, Provenance, Study, Verdict, Workshop};
 use landau_solver::error::{Error, Result};
 use landau_solver::study::shard::Share;
 use serde_json::json;
@@ -24,27 +24,16 @@ pub fn reproduce(
         None => only_study()?,
     };
     let study = Study::read(&path)?;
-    let home = path.parent().unwrap_or(Path::new(".")).to_owned();
-    let errata = study
-        .errata
-        .as_ref()
-        .map(|file| Errata::read(&home.join(file)));
+    let errata = study.errata.as_ref();
+    let errata = errata.map(|file| Errata::read(&study.home().join(file)));
     let errata = errata.transpose()?;
-    let model = library.model(&beside(&home, &study.model))?;
-    let formulas = inspect::formulas(model.as_ref(), errata.as_ref())?;
-    let shop = Workshop {
-        library,
-        study: &study,
-        home,
-        out: out.to_owned(),
-        kept: kept(out),
-        provenance: provenance(),
-    };
-    interrupt::keeping(Kept::Tasks(shop.kept.clone()));
+    let shop = Workshop::new(library, &study, out, provenance())?;
+    let formulas = inspect::formulas(shop.model()?.as_ref(), errata.as_ref())?;
+    interrupt::keeping(Kept::Tasks(shop.kept().to_owned()));
     if let Some(text) = shard {
         let share = share(text)?;
         let count = shop.run_share(share, &Bar::new("reproducing"))?;
-        let (Share { index, count: of }, kept) = (share, shop.kept.display());
+        let (Share { index, count: of }, kept) = (share, shop.kept().display());
         match json {
             true => say!(
                 "{}",
@@ -58,7 +47,7 @@ pub fn reproduce(
     }
     let found = shop.run(&formulas, &Bar::new("reproducing"))?;
     let page = out.join("index.html");
-    let failing = found.claims.iter().filter(|c| c.verdict == Verdict::Fails);
+    let count = |verdict: Verdict| found.claims.iter().filter(|c| c.verdict == verdict).count();
     if json {
         let object = json!({
             "study": path.display().to_string(),
@@ -66,7 +55,8 @@ pub fn reproduce(
             "figures": study.figure.len(),
             "numbers": found.numbers.len(),
             "claims": found.claims.len(),
-            "claims_failing": failing.count(),
+            "claims_contradicted": count(Verdict::Contradicted),
+            "claims_not_met": count(Verdict::NotMet),
             "failures": found.failures,
         });
         say!("{object}");
@@ -87,8 +77,10 @@ pub fn reproduce(
                 number.printed_as.as_deref().unwrap_or("")
             );
         }
-        for claim in failing {
-            say!("figure {}: fails: {}", claim.figure, claim.says);
+        let mut against: Vec<_> = found.claims.iter().filter(|c| c.verdict.is_against()).collect();
+        against.sort_by_key(|claim| claim.verdict);
+        for claim in against {
+            say!("figure {}: {}: {}", claim.figure, claim.verdict_in_words(), claim.says);
         }
         say!(
             "{} figures, {} numbers, {} statements: {}",
@@ -108,13 +100,6 @@ pub fn reproduce(
             }
         ))),
     }
-}
-
-/// The folder beside a report in which finished tasks are kept.
-fn kept(out: &Path) -> PathBuf {
-    let mut name = out.file_name().unwrap_or_default().to_owned();
-    name.push(".kept");
-    out.with_file_name(name)
 }
 
 /// The command, the time and the commit.

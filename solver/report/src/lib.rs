@@ -9,3 +9,6 @@ pub mod data;
 pub mod figure;
 pub mod library;
 pub mod reproduce;
+mod text;
+
+pub(crate) use text::{is_shown, shown, shown_lines};

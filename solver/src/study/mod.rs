@@ -198,6 +198,19 @@ pub struct Carried {
     pub pair: EigenPair,
 }
 
+/// Refuses a number of collocation points out of range.
+///
+/// # Errors
+/// Fewer than 4, more than 1000.
+pub fn check_resolution(resolution: usize) -> Result<()> {
+    if (4..=1000).contains(&resolution) {
+        return Ok(());
+    }
+    Err(Error::input(format!(
+        "-M {resolution} is out of range: -M accepts 4 to 1000"
+    )))
+}
+
 /// Refuses a wavenumber that cannot be one.
 ///
 /// # Errors

@@ -7,6 +7,8 @@ pub trait Progress: Sync {
     /// Steps done since; none at the start of a longer stretch. It may unwind to end the work, which leaves files
     /// and journals as they are after any interruption.
     fn advance(&self, steps: usize);
+    /// A longer stretch is done, and what it was.
+    fn done(&self, _: &str) {}
     /// There is no more to do.
     fn end(&self);
 }

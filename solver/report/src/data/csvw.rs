@@ -44,7 +44,7 @@ pub fn describe(
 ) -> String {
     let column = |(name, datatype): &(&str, Datatype)| {
         json!({
-            "titles": name,
+            "titles": plain_text(name),
             "dc:description": meaning(name),
             "datatype": datatype.name(),
             "null": "",
@@ -98,6 +98,26 @@ pub fn describe_sweep(path: &Path, table: &Table, hash: &str) -> Vec<u8> {
         ("seal".to_owned(), json!(BLANK)),
     ]);
     sealed(describe(&csv, title.unwrap_or_default(), &columns, &facts).into_bytes())
+}
+
+/// A text as a cell of a CSV: in quotation marks where it needs them.
+pub fn cell(text: &str) -> String {
+    let text = plain_text(text);
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text
+    }
+}
+
+/// A text that a spreadsheet takes for one, without control characters: what begins as a formula does gets an apostrophe.
+fn plain_text(text: &str) -> String {
+    let text = crate::shown(text);
+    if text.starts_with(['=', '+', '-', '@']) {
+        format!("'{text}")
+    } else {
+        text
+    }
 }
 
 /// What a column holds.

@@ -16,7 +16,7 @@ pub(super) fn encode(data: &Dataset) -> Result<Vec<u8>, String> {
     // The title is one line of at most 256 bytes; the seal stands at its end.
     let mut text = format!(
         "# vtk DataFile Version 3.0\n{:.200} {BLANK}\nASCII\nDATASET RECTILINEAR_GRID\n",
-        title.unwrap_or_default().replace('\n', " "),
+        crate::shown(&title.unwrap_or_default()),
     );
     let profiles: Vec<_> = data
         .arrays

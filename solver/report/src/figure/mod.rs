@@ -40,7 +40,8 @@ impl Drawing {
 
     /// As SVG.
     pub fn svg(&self) -> String {
-        numbered_anew(&kuva::backend::svg::SvgBackend::default().render_scene(&self.scene))
+        let svg = kuva::backend::svg::SvgBackend::default().render_scene(&self.scene);
+        crate::shown_lines(numbered_anew(&svg))
     }
 
     /// As PNG.

@@ -1,8 +1,10 @@
 //! What a task of a study gives: pictures, tables, numbers, verdicts on statements.
 
-use super::study::{Case, Printed, Study, named};
-use crate::data::csvw::{self, Datatype};
-use serde::{Deserialize, Deserializer, Serialize};
+use super::claim::Claim;
+use super::study::{Case, Printed, named};
+use super::table::Table;
+use super::task::called;
+use serde::{Deserialize, Serialize};
 
 /// One number beside the printed one.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -28,10 +30,25 @@ pub struct Number {
     pub printed: Option<f64>,
     /// The same with its own digits.
     pub printed_as: Option<String>,
+    /// What somebody else computed, where that is no print, and what it is.
+    #[serde(default)]
+    pub reference: Option<Beside>,
     /// `ok`, or why there is no number.
     pub status: String,
     /// A sentence beside it.
     pub note: String,
+    /// The label of the case in the study: a case may be drawn at several places.
+    #[serde(skip)]
+    pub origin: String,
+}
+
+/// A number of somebody else's.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Beside {
+    /// What it is.
+    pub label: String,
+    /// The number.
+    pub value: f64,
 }
 
 impl Number {
@@ -57,6 +74,8 @@ impl Number {
             error: None,
             printed: printed.map(|p| p.value),
             printed_as: printed.map(|p| p.text.clone()),
+            reference: None,
+            origin: case.origin.clone().unwrap_or_else(|| case.label.clone()),
             status: "did not come out".to_owned(),
             note: case.note.clone(),
         }
@@ -64,9 +83,10 @@ impl Number {
 
     /// The same with its value.
     pub fn answered(self, ours: f64, error: Option<f64>) -> Self {
-        let status = match ours.is_finite() {
-            true => "ok".to_owned(),
-            false => "no value".to_owned(),
+        let status = if ours.is_finite() {
+            "ok".to_owned()
+        } else {
+            "no value".to_owned()
         };
         Number {
             ours: Some(ours).filter(|x| x.is_finite()),
@@ -94,19 +114,6 @@ impl Number {
     }
 }
 
-/// A table that is shown, and written as CSV.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Table {
-    /// Names of the columns of numbers.
-    pub header: Vec<String>,
-    /// Numbers; a gap is not finite.
-    #[serde(deserialize_with = "with_gaps")]
-    pub rows: Vec<Vec<f64>>,
-    /// Columns of words after those, by name.
-    #[serde(default)]
-    pub words: Vec<(String, Vec<String>)>,
-}
-
 /// A picture with the data it was drawn from.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Picture {
@@ -114,37 +121,12 @@ pub struct Picture {
     pub caption: String,
     /// What is seen, in a sentence.
     pub says: String,
-    /// The drawing.
-    pub svg: String,
+    /// The drawing; nothing where there is a table and no value to draw.
+    pub svg: Option<String>,
     /// Its data.
     pub table: Option<Table>,
     /// Files that stand beside it already, by name.
     pub files: Vec<String>,
-}
-
-/// What became of a statement.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Verdict {
-    /// In every case, beyond the error.
-    Holds,
-    /// Not in some case.
-    Fails,
-    /// An error or a missing number leaves it open.
-    Undecided,
-}
-
-/// A statement of the source, decided by numbers.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Claim {
-    /// The figure that it is about.
-    pub figure: String,
-    /// The statement.
-    pub says: String,
-    /// What became of it.
-    pub verdict: Verdict,
-    /// The number of every case that decides it.
-    pub evidence: Vec<String>,
 }
 
 /// Everything that a figure consists of.
@@ -184,141 +166,43 @@ impl Outcome {
 
     /// Why what is labelled so did not come out.
     pub fn reason(&self, label: &str) -> String {
-        let start = format!("{label}: ");
+        let start = format!("{}: ", called(label));
         let found = self.failures.iter().find_map(|f| f.strip_prefix(&start));
         found.unwrap_or("did not come out").to_owned()
     }
 
-    /// A printed number that no answer of the task goes with is named, not dropped.
+    /// A printed number is answered by a number of its own case and name, or named as missed.
     pub fn demand_partners(&mut self, figure: &str, cases: &[Case]) {
         for case in cases {
             for quantity in case.printed.keys() {
-                let answers = |n: &Number| n.quantity.ends_with(quantity.as_str());
+                let answers = |n: &Number| n.origin == case.label && n.name == *quantity;
                 if self.numbers.iter().any(answers) {
                     continue;
                 }
                 let label = named(case, quantity);
-                let reason = "nothing in this task is called so";
-                self.failures.push(format!("{label}: {reason}"));
                 let number = Number::new(figure, case, quantity, label);
-                self.numbers.push(number.failed(reason));
+                self.numbers
+                    .push(number.failed("nothing in this task is called so"));
             }
         }
+        let missed = self.numbers.iter().filter(|n| n.ours.is_none());
+        let missed = missed.filter(|n| n.printed.is_some() || n.reference.is_some());
+        let told = |n: &&Number| {
+            let start = format!("{}: ", n.quantity);
+            !self.failures.iter().any(|f| f.starts_with(&start))
+        };
+        let untold: Vec<String> = missed
+            .filter(told)
+            .map(|n| format!("{}: {}", n.quantity, n.status))
+            .collect();
+        self.failures.extend(untold);
     }
-}
-
-impl Table {
-    /// Without rows.
-    pub fn new(header: &[&str]) -> Self {
-        Table {
-            header: header.iter().map(|h| (*h).to_owned()).collect(),
-            rows: Vec::new(),
-            words: Vec::new(),
-        }
-    }
-
-    /// The same with columns of words.
-    pub fn with_words(mut self, names: &[&str]) -> Self {
-        let column = |name: &&str| ((*name).to_owned(), Vec::new());
-        self.words = names.iter().map(column).collect();
-        self
-    }
-
-    /// Adds a row with its words.
-    pub fn push(&mut self, numbers: Vec<f64>, words: &[&str]) {
-        self.rows.push(numbers);
-        for ((_, column), word) in self.words.iter_mut().zip(words) {
-            column.push((*word).to_owned());
-        }
-    }
-
-    /// What its columns are, for the file beside its CSV.
-    pub fn metadata(&self, csv: &str, title: &str, study: &Study) -> String {
-        let numbers = self
-            .header
-            .iter()
-            .map(|name| (name.as_str(), Datatype::Number));
-        let words = self
-            .words
-            .iter()
-            .map(|(name, _)| (name.as_str(), Datatype::Text));
-        let columns: Vec<(&str, Datatype)> = numbers.chain(words).collect();
-        let facts = [
-            ("study", study.title.as_str()),
-            ("source", &study.source),
-            ("model", &study.model),
-            ("version", env!("CARGO_PKG_VERSION")),
-        ];
-        let facts = facts.map(|(name, value)| (name.to_owned(), value.into()));
-        let resolution = ("resolution".to_owned(), study.resolution.into());
-        let facts: Vec<_> = facts.into_iter().chain([resolution]).collect();
-        csvw::describe(csv, title, &columns, &facts)
-    }
-
-    /// Comma-separated, empty where there is no value; words in quotation marks where they need them.
-    pub fn csv(&self) -> String {
-        let mut header = self.header.clone();
-        header.extend(self.words.iter().map(|(name, _)| name.clone()));
-        let header: Vec<String> = header.iter().map(|name| quoted(name)).collect();
-        let mut text = header.join(",") + "\n";
-        for (index, row) in self.rows.iter().enumerate() {
-            let number = |v: &f64| match v.is_finite() {
-                true => format!("{v:e}"),
-                false => String::new(),
-            };
-            let mut cells: Vec<String> = row.iter().map(number).collect();
-            let words = self
-                .words
-                .iter()
-                .filter_map(|(_, column)| column.get(index));
-            cells.extend(words.map(|word| text_cell(word)));
-            text += &(cells.join(",") + "\n");
-        }
-        text
-    }
-}
-
-/// A word as CSV has it.
-fn quoted(word: &str) -> String {
-    match word.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", word.replace('"', "\"\"")),
-        false => word.to_owned(),
-    }
-}
-
-/// A word as CSV has it; an apostrophe before one that a spreadsheet would compute as a formula.
-fn text_cell(word: &str) -> String {
-    if word.starts_with(['=', '+', '-', '@', '\t', '\r']) {
-        quoted(&format!("'{word}"))
-    } else {
-        quoted(word)
-    }
-}
-
-/// Rows as JSON keeps them: what is not a finite number comes back from `null`.
-fn with_gaps<'d, D: Deserializer<'d>>(input: D) -> Result<Vec<Vec<f64>>, D::Error> {
-    let rows = Vec::<Vec<Option<f64>>>::deserialize(input)?;
-    let filled = |row: Vec<Option<f64>>| row.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect();
-    Ok(rows.into_iter().map(filled).collect())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::study::Printed;
-    use super::{Number, Table, text_cell};
-
-    #[test]
-    fn a_label_is_no_formula() {
-        for (word, cell) in [
-            ("=1+1", "'=1+1"),
-            ("-x", "'-x"),
-            ("@sum(a,b)", "\"'@sum(a,b)\""),
-            ("S = 100", "S = 100"),
-            ("a,b", "\"a,b\""),
-        ] {
-            assert_eq!(text_cell(word), cell);
-        }
-    }
+    use super::super::study::{Case, Printed};
+    use super::{Number, Outcome};
 
     #[test]
     fn differences_in_units_of_the_last_printed_digit() {
@@ -332,8 +216,10 @@ mod tests {
             error: None,
             printed: printed.parse().ok(),
             printed_as: Some(printed.to_owned()),
+            reference: None,
             status: String::new(),
             note: String::new(),
+            origin: String::new(),
         };
         let units = |ours, printed| number(ours, printed).units().expect("units");
         assert!((units(0.0368, "0.0366") - 2.0).abs() < 1e-9);
@@ -343,11 +229,28 @@ mod tests {
         assert_eq!(Printed::of("1700").last_digit(), 1.0);
     }
 
+    /// Each printed number is answered by the number of its own case and name.
     #[test]
-    fn words_in_a_table() {
-        let mut table = Table::new(&["k"]).with_words(&["status"]);
-        table.push(vec![0.5], &["ok"]);
-        table.push(vec![f64::NAN], &["lost, again"]);
-        assert_eq!(table.csv(), "k,status\n5e-1,ok\n,\"lost, again\"\n");
+    fn a_printed_number_is_answered_or_missed() {
+        let case = |label: &str, value: &str| Case {
+            label: label.to_owned(),
+            printed: [("k".to_owned(), Printed::of(value))].into(),
+            ..Case::default()
+        };
+        let cases = [case("one", "2.2"), case("two", "99.0")];
+        let mut outcome = Outcome::default();
+        let name = |case: &Case, name: &str| Number::new("1", case, name, format!("{}: {name}", case.label));
+        outcome.numbers.push(name(&cases[0], "k").answered(2.2, None));
+        // Another number of the second case, whose name ends as the printed one.
+        outcome.numbers.push(name(&cases[1], "second k").answered(2.2, None));
+        outcome.demand_partners("1", &cases);
+        assert_eq!(outcome.numbers.len(), 3);
+        assert_eq!((outcome.numbers[2].printed, outcome.numbers[2].ours), (Some(99.0), None));
+        assert_eq!(outcome.failures, ["two: k: nothing in this task is called so"]);
+        // One that has no value is no answer.
+        let mut outcome = Outcome::default();
+        outcome.numbers.push(name(&cases[0], "k").failed("no equilibrium"));
+        outcome.demand_partners("1", &cases[..1]);
+        assert_eq!(outcome.failures, ["one: k: no equilibrium"]);
     }
 }

@@ -6,11 +6,9 @@ use super::study::{Figure, Task};
 use super::task;
 use super::workshop::Workshop;
 use landau_solver::error::{Error, Result};
-use landau_solver::file::write_whole;
 use landau_solver::study::Progress;
 use landau_solver::study::shard::Share;
-use std::fs;
-use std::path::Path;
+use std::time::Instant;
 
 /// A task and where it belongs.
 #[derive(Clone, Copy)]
@@ -79,15 +77,19 @@ impl Workshop<'_> {
         progress: &dyn Progress,
         mut take: impl FnMut(&Unit, Outcome),
     ) -> Result<()> {
-        for folder in [&self.kept, &self.out.join("sources")] {
-            fs::create_dir_all(folder)
-                .map_err(|e| Error::input(format!("{} cannot be made: {e}", folder.display())))?;
-        }
+        self.shelf.open()?;
+        self.kept.open()?;
         progress.begin(tasks.len());
         for unit in tasks {
-            let stem = format!("{}-{}", unit.figure.id, unit.index + 1);
-            let path = self.kept.join(format!("{stem}.json"));
-            take(unit, self.task(&unit.figure.id, &stem, unit.task, &path)?);
+            let started = Instant::now();
+            take(unit, self.task(unit)?);
+            progress.done(&format!(
+                "figure {}, task {} ({}): {:.1} s",
+                unit.figure.id,
+                unit.index + 1,
+                unit.task.kind(),
+                started.elapsed().as_secs_f64()
+            ));
             progress.advance(1);
         }
         progress.end();
@@ -97,40 +99,19 @@ impl Workshop<'_> {
     fn write_json<T: serde::Serialize>(&self, name: &str, list: &[T]) -> Result<()> {
         let json = serde_json::to_string_pretty(list);
         let json = json.map_err(|e| Error::computation(e.to_string()))?;
-        write_whole(&self.out.join(name), (json + "\n").as_bytes())
+        self.shelf.write(name, (json + "\n").as_bytes())
     }
 
     /// One task, from an earlier run where that has finished it.
-    fn task(&self, figure: &str, stem: &str, task: &Task, path: &Path) -> Result<Outcome> {
-        let key = self.key(stem, task)?;
-        if let Ok(text) = fs::read_to_string(path)
-            && let Ok((known, outcome)) = serde_json::from_str::<(String, Outcome)>(&text)
-            && known == key
-            && outcome.files().all(|file| self.out.join(file).is_file())
-        {
+    fn task(&self, unit: &Unit) -> Result<Outcome> {
+        let figure = &unit.figure.id;
+        let stem = format!("{figure}-{}", unit.index + 1);
+        let made_from = self.made_from(&stem, unit.task)?;
+        if let Some(outcome) = self.kept_task(&stem, &made_from) {
             return Ok(outcome);
         }
-        let outcome = task::run(self, figure, stem, task)?;
-        let text = serde_json::to_string(&(key, &outcome))
-            .map_err(|e| Error::computation(e.to_string()))?;
-        write_whole(path, text.as_bytes())?;
+        let outcome = task::run(self, figure, &stem, unit.task)?;
+        self.keep(&stem, &made_from, &outcome)?;
         Ok(outcome)
-    }
-
-    /// What a kept task must have been made from.
-    fn key(&self, stem: &str, task: &Task) -> Result<String> {
-        let spec = serde_json::to_string(task).map_err(|e| Error::computation(e.to_string()))?;
-        let mut hashes = Vec::new();
-        for case in task.cases() {
-            hashes.push(self.setup(case)?.hash());
-        }
-        hashes.dedup();
-        let version = env!("CARGO_PKG_VERSION");
-        let commit = self.provenance.commit.as_deref().unwrap_or_default();
-        Ok(format!(
-            "{stem} {spec} {} {} {version} {commit}",
-            hashes.join(" "),
-            self.study.resolution
-        ))
     }
 }

@@ -1,11 +1,16 @@
 //! Where a study is worked on: the models, the folders, the cases of the study set up.
 
-use super::study::{Case, Study, Task};
+use super::feasible;
+use super::files::Shelf;
+use super::study::{Case, Study};
 use super::symbols;
 use crate::library::Library;
 use landau_solver::error::Result;
+use landau_solver::model::Model;
 use landau_solver::study::Setup;
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Where the page came from.
 pub struct Provenance {
@@ -19,58 +24,84 @@ pub struct Provenance {
 
 /// Where a study is worked on.
 pub struct Workshop<'a> {
-    /// Models at hand.
-    pub library: &'a Library,
     /// What is worked through.
     pub study: &'a Study,
-    /// Folder of the study file: models by path stand relative to it.
-    pub home: PathBuf,
-    /// Folder of the report.
-    pub out: PathBuf,
-    /// Where finished tasks are kept: beside the report, not in it.
-    pub kept: PathBuf,
     /// How the report is made.
     pub provenance: Provenance,
+    library: &'a Library,
+    /// The folder of the report.
+    pub(super) shelf: Shelf,
+    /// Where finished tasks are kept: beside the report, not in it.
+    pub(super) kept: Shelf,
+    /// Models by the names that the study gives them, each read once.
+    models: Mutex<BTreeMap<String, Arc<dyn Model>>>,
 }
 
-impl Workshop<'_> {
+impl<'a> Workshop<'a> {
+    /// A study, the models for it and the folder of its report. Nothing is computed or written.
+    ///
+    /// # Errors
+    /// A folder that holds other things than a report; a study that asks its models for what they do not have.
+    pub fn new(
+        library: &'a Library,
+        study: &'a Study,
+        out: &Path,
+        provenance: Provenance,
+    ) -> Result<Self> {
+        let mut beside = out.file_name().unwrap_or_default().to_owned();
+        beside.push(".kept");
+        let shelf = Shelf::new(out)?;
+        let shop = Workshop {
+            study,
+            provenance,
+            library,
+            shelf,
+            kept: Shelf::new(&out.with_file_name(beside))?,
+            models: Mutex::default(),
+        };
+        feasible::check(&shop)?;
+        Ok(shop)
+    }
+
+    /// The folder in which finished tasks are kept.
+    pub fn kept(&self) -> &Path {
+        self.kept.folder()
+    }
+
+    /// The model of the whole study.
+    ///
+    /// # Errors
+    /// A name that is none, a spec with mistakes.
+    pub fn model(&self) -> Result<Arc<dyn Model>> {
+        self.model_named(&self.study.model)
+    }
+
     /// A text as pictures have it: names of the study written as it says.
     pub(super) fn written(&self, text: &str) -> String {
         symbols::written(text, &self.study.symbol)
-    }
-
-    /// Every file that the study was made from, by the name it is delivered under: the study, its formulas, the specs.
-    pub(super) fn sources(&self) -> Result<Vec<(String, String)>> {
-        let mut files = self.study.files.clone();
-        let cases = self.study.figure.iter().flat_map(|figure| &figure.task);
-        for case in cases.flat_map(Task::cases) {
-            for (path, text) in self.setup(case)?.model.sources() {
-                let name = Path::new(&path).file_name().unwrap_or_default();
-                let name = name.to_string_lossy().into_owned();
-                if !files.iter().any(|(known, _)| *known == name) {
-                    files.push((name, text));
-                }
-            }
-        }
-        Ok(files)
     }
 
     /// The model and parameters of a case.
     pub(super) fn setup(&self, case: &Case) -> Result<Setup> {
         let name = case.model.as_ref().unwrap_or(&self.study.model);
         let resolution = case.resolution.unwrap_or(self.study.resolution);
-        let model = self.library.model(&beside(&self.home, name))?;
-        let mut setup = Setup::new(model, resolution);
+        let mut setup = Setup::new(self.model_named(name)?, resolution);
         setup.set(&case.set)?;
         Ok(setup)
     }
-}
 
-/// A model as a study names it: a file beside the study where there is one, a built model otherwise.
-pub fn beside(home: &Path, name: &str) -> String {
-    let file = home.join(name);
-    match file.to_str() {
-        Some(path) if file.is_file() => path.to_owned(),
-        _ => name.to_owned(),
+    /// A model as the study names it: a file beside the study where there is one, a built model otherwise.
+    pub(super) fn model_named(&self, name: &str) -> Result<Arc<dyn Model>> {
+        let mut models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(model) = models.get(name) {
+            return Ok(model.clone());
+        }
+        let file = self.study.home().join(name);
+        let model = match file.to_str() {
+            Some(path) if file.is_file() => self.library.model(path)?,
+            _ => self.library.model(name)?,
+        };
+        models.insert(name.to_owned(), model.clone());
+        Ok(model)
     }
 }

@@ -16,6 +16,7 @@ use landau_codegen::formula::{Arrangement, Formula as Tree};
 use landau_codegen::model::End;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{TEXT_LIMIT, read_text};
+use super::study::{refined, words_can_be_shown};
 use serde::Deserialize;
 use std::path::Path;
 use verdict::{Change, File};
@@ -184,7 +185,9 @@ impl Errata {
     /// A file that is missing, or says what such a file does not (with line and column).
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path, TEXT_LIMIT)?;
-        toml::from_str(&text).map_err(|e| Error::input(format!("{}: {e}", path.display())))
+        let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
+        words_can_be_shown(&text).map_err(wrong)?;
+        toml::from_str(&text).map_err(|e| wrong(refined(&text, &e)))
     }
 
     /// Compares every formula with the derivation.

@@ -98,13 +98,31 @@ fn article(judgement: &Judgement) -> Result<Markup> {
                 @else { strong.fails { (differing) " of " (judgement.terms) " terms differ" } } }
             (sides(judgement)?)
             @for [letter, meaning] in &judgement.meanings {
-                p.note.slips { "where " (inline(letter)) " is " (inline(&shown(meaning, judgement, |s| &s.printed))) }
+                p.note.slips { "where " (inline(term(letter))) " is " (inline(&shown(term(meaning), judgement, |s| &s.printed))) }
             }
             @if !judgement.slips.is_empty() { ul { @for slip in &judgement.slips { (erratum(slip, judgement)) } } }
             @if let Some(open) = &judgement.unexplained { p.failure { "Not explained: " (open) } }
             details { summary { "as it is derived here" } (displayed(&named(judgement, &latex(&judgement.derived)))?) }
         }
     })
+}
+
+/// What a letter stands for, without the sign of equality that tells it from the same letter elsewhere.
+fn term(text: &str) -> &str {
+    text.trim().trim_end_matches('=').trim_end()
+}
+
+/// A piece of a formula as it can be set by itself: brackets without their partners are signs.
+fn piece(latex: &str) -> String {
+    let count = |word: &str| latex.matches(word).count();
+    if count(r"\left") == count(r"\right") {
+        return latex.to_owned();
+    }
+    let mut text = latex.to_owned();
+    for nothing in [r"\left.", r"\right."] {
+        text = text.replace(nothing, "");
+    }
+    text.replace(r"\left", "").replace(r"\right", "")
 }
 
 /// The formula as printed, and mended where it has to be.
@@ -156,7 +174,7 @@ fn shown(formula: &str, judgement: &Judgement, side: fn(&Found) -> &String) -> S
 fn erratum(slip: &Found, judgement: &Judgement) -> Markup {
     let side = |text: &str| match judgement.language {
         Language::Spec => html! { code { (text) } },
-        Language::Latex => inline(text),
+        Language::Latex => inline(&piece(text)),
     };
     html! {
         li { span.slip { (side(&slip.printed)) } " for " span.mended { (side(&slip.derived)) } ": "
@@ -174,4 +192,17 @@ fn remark(remark: &Remark) -> Result<Markup> {
             @if let Some(right) = right { div.mends { (right) } }
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{piece, term};
+
+    #[test]
+    fn pieces_stand_by_themselves() {
+        assert_eq!(piece(r"\right] \Big]"), r"] \Big]");
+        assert_eq!(piece(r"\left. a \right)  \right)"), r" a )  )");
+        assert_eq!(piece(r"\left(a\right)"), r"\left(a\right)");
+        assert_eq!(term(r"\mathbf{u} ="), r"\mathbf{u}");
+    }
 }

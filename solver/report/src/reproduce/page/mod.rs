@@ -1,21 +1,25 @@
 //! The report: one HTML page that opens from disk, pictures and data beside it.
 
 mod formulas;
+mod mathml;
 mod numbers;
 mod text;
 
 pub use formulas::Formulas;
 
+use super::claim::Claim;
 use super::outcome::{Outcome, Picture};
 use super::study::Figure;
 use super::workshop::{Provenance, Workshop};
 use crate::data::csvw;
 use landau_solver::error::Result;
-use landau_solver::file::write_whole;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use text::rich;
 
 const STYLE: &str = include_str!("style.css");
+
+/// What a browser may do with the page: show it and its own pictures. No scripts, nothing from elsewhere.
+const POLICY: &str = "default-src 'none'; img-src 'self' file:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 
 pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) -> Result<()> {
     let study = shop.study;
@@ -36,6 +40,7 @@ pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) 
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (study.title) }
                 style { (PreEscaped(STYLE)) }
@@ -52,8 +57,7 @@ pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) 
                     h1 { (study.title) }
                     p { (rich(&study.introduction, &study.symbol)) }
                     p { "Reproduced: " (study.source) ". M = " (study.resolution) " unless a figure says otherwise. “Printed” is "
-                        "what the source has, with our difference in units of its last digit; P (2.28) is an equation of the "
-                        "source. All numbers: " a href="numbers.json" { "numbers.json" } ", all statements: "
+                        "what the source has, with our difference in units of its last printed digit. All numbers: " a href="numbers.json" { "numbers.json" } ", all statements: "
                         a href="claims.json" { "claims.json" } "." }
                     ul.contents { @for figure in &study.figure {
                         li { a href=(format!("#figure-{}", figure.id)) { (heading(figure)) " " (rich(&figure.title, &study.symbol)) } }
@@ -67,21 +71,24 @@ pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) 
             }
         }
     };
-    write_whole(&shop.out.join("index.html"), page.into_string().as_bytes())
+    shop.shelf
+        .write("index.html", page.into_string().as_bytes())
 }
 
 /// What a section is called: figures that the source has by their number, others by their own name.
 fn heading(figure: &Figure) -> String {
-    match figure.id.starts_with(|c: char| c.is_ascii_digit()) {
-        true => format!("Figure {}.", figure.id),
-        false => String::new(),
+    if figure.id.starts_with(|c: char| c.is_ascii_digit()) {
+        format!("Figure {}.", figure.id)
+    } else {
+        String::new()
     }
 }
 
 fn short(figure: &Figure) -> String {
-    match figure.id.starts_with(|c: char| c.is_ascii_digit()) {
-        true => figure.id.clone(),
-        false => figure.id.replace('-', " "),
+    if figure.id.starts_with(|c: char| c.is_ascii_digit()) {
+        figure.id.clone()
+    } else {
+        figure.id.replace('-', " ")
     }
 }
 
@@ -103,19 +110,26 @@ fn section(shop: &Workshop, figure: &Figure, outcome: &Outcome) -> Result<Markup
     })
 }
 
-/// Every statement of the source in one table.
+/// Every statement in one table: first what the numbers contradict.
 fn statements(shop: &Workshop, outcomes: &[Outcome]) -> Markup {
     let sections = shop.study.figure.iter().zip(outcomes);
-    let all =
-        sections.flat_map(|(figure, outcome)| outcome.claims.iter().map(move |c| (figure, c)));
+    let mut all: Vec<(&Figure, &Claim)> = sections
+        .flat_map(|(figure, outcome)| outcome.claims.iter().map(move |c| (figure, c)))
+        .collect();
+    all.sort_by_key(|(_, claim)| claim.verdict);
+    let symbols = &shop.study.symbol;
     html! {
         section id="statements" {
             h2 { "What the source says in words" a.back href="#top" { "contents" } }
+            p { "Words in quotation marks are the source’s, from the section that is named. The criterion by which they are decided "
+                "is ours. A statement is contradicted where the source itself sets the bound, a number, a sign or a trend; where "
+                "the bound is ours, it is not met." }
             div.scroll { table {
-                thead { tr { th { "statement" } th { } th { "decided in" } } }
-                tbody { @for (figure, claim) in all {
+                thead { tr { th { "statement" } th { "criterion" } th { } th { "decided in" } } }
+                tbody { @for (figure, claim) in &all {
                     tr {
-                        td { (rich(&claim.says, &shop.study.symbol)) }
+                        td { (numbers::words(claim, symbols)) }
+                        td { (numbers::criterion(claim, symbols)) }
                         td { (numbers::verdict(claim)) }
                         td { a href=(format!("#figure-{}", figure.id)) { (short(figure)) } }
                     }
@@ -129,17 +143,17 @@ fn statements(shop: &Workshop, outcomes: &[Outcome]) -> Markup {
 fn drawn(shop: &Workshop, figure: &Figure, number: usize, picture: &Picture) -> Result<Markup> {
     let stem = format!("figure{}-{number}", figure.id);
     let svg = format!("{stem}.svg");
-    write_whole(&shop.out.join(&svg), picture.svg.as_bytes())?;
+    if let Some(drawing) = &picture.svg {
+        shop.shelf.write(&svg, drawing.as_bytes())?;
+    }
     let mut files = picture.files.clone();
     if let Some(table) = &picture.table {
         let csv = format!("{stem}.csv");
-        write_whole(&shop.out.join(&csv), table.csv().as_bytes())?;
+        shop.shelf.write(&csv, table.csv().as_bytes())?;
         let described = csvw::beside(&csv);
         let about = format!("{} {}", heading(figure), figure.title);
-        write_whole(
-            &shop.out.join(&described),
-            table.metadata(&csv, &about, shop.study).as_bytes(),
-        )?;
+        let metadata = table.metadata(&csv, about.trim(), shop.study);
+        shop.shelf.write(&described, metadata.as_bytes())?;
         files.extend([csv, described]);
     }
     let class = if picture.table.is_some() {
@@ -150,7 +164,9 @@ fn drawn(shop: &Workshop, figure: &Figure, number: usize, picture: &Picture) -> 
     let symbols = &shop.study.symbol;
     Ok(html! {
         figure {
-            img class=(class) src=(svg) alt=(format!("{} {}: {}", heading(figure), figure.title, picture.says)) loading="lazy";
+            @if picture.svg.is_some() {
+                img class=(class) src=(svg) alt=(format!("{} {}: {}", heading(figure), figure.title, picture.says).trim()) loading="lazy";
+            }
             figcaption {
                 @if !picture.caption.is_empty() { (rich(&picture.caption, symbols)) ". " }
                 (picture.says) " Data: "
@@ -165,7 +181,7 @@ fn made(shop: &Workshop) -> Result<Markup> {
     let mut files = Vec::new();
     for (name, text) in shop.sources()? {
         let path = format!("sources/{name}");
-        write_whole(&shop.out.join(&path), text.as_bytes())?;
+        shop.shelf.write(&path, text.as_bytes())?;
         files.push(path);
     }
     let Provenance {
@@ -178,7 +194,8 @@ fn made(shop: &Workshop) -> Result<Markup> {
             h2 { "How it was made" a.back href="#top" { "contents" } }
             p { code { (command) } " on " time datetime=(date) { (date) } ", Landau " (env!("CARGO_PKG_VERSION"))
                 @if let Some(commit) = commit { ", commit " (commit) } "." }
-            p { "From " @for file in &files { a href=(file) { (file) } " " } }
+            p { "From " @for file in &files { a href=(file) { (file) } " " } "— the study, printed formulas, references, models "
+                "and their laws." }
         }
     })
 }

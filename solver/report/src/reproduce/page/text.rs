@@ -1,6 +1,7 @@
 //! Words, names and formulas as a page has them.
 
 use super::super::symbols::{Piece, Symbols, pieces};
+use super::mathml::is_mathml;
 use landau_solver::error::{Error, Result};
 use maud::{Markup, PreEscaped, html};
 use pulldown_latex::config::DisplayMode;
@@ -66,7 +67,38 @@ fn balanced(part: &str) -> bool {
     count("{") == count("}") && count("\\left") == count("\\right") && count("\\Big") == 0
 }
 
+/// A formula longer or nested deeper than this is shown as it is written.
+const LONGEST: usize = 20_000;
+const DEEPEST: usize = 60;
+
+/// How deep brackets of a formula stand in one another, and commands that take what follows them.
+fn depth(latex: &str) -> usize {
+    let (mut open, mut deepest) = (0_usize, 0);
+    for c in latex.chars() {
+        match c {
+            '{' | '[' | '(' => open += 1,
+            '}' | ']' | ')' => open = open.saturating_sub(1),
+            _ => {}
+        }
+        deepest = deepest.max(open);
+    }
+    let nested = [r"\frac", r"\sqrt", r"\left", r"\begin", r"\not", r"^", r"_"];
+    let bare = |command: &&str| latex.contains(&command.repeat(DEEPEST));
+    if nested.iter().any(bare) {
+        usize::MAX
+    } else {
+        deepest
+    }
+}
+
 fn mathml(latex: &str, display_mode: DisplayMode) -> Result<String> {
+    let refused = |why: &str| {
+        let start: String = latex.chars().take(200).collect();
+        Error::input(format!("a formula cannot be typeset: {why}: {start}"))
+    };
+    if latex.len() > LONGEST || depth(latex) > DEEPEST {
+        return Err(refused("it is too long or nested too deep"));
+    }
     let storage = Storage::new();
     let parser = Parser::new(latex, &storage);
     let config = RenderConfig {
@@ -74,15 +106,50 @@ fn mathml(latex: &str, display_mode: DisplayMode) -> Result<String> {
         ..RenderConfig::default()
     };
     let mut text = String::new();
-    push_mathml(&mut text, parser, config)
-        .map_err(|e| Error::computation(format!("a formula cannot be typeset: {e}: {latex}")))?;
+    push_mathml(&mut text, parser, config).map_err(|e| refused(&e.to_string()))?;
     if text.contains("<merror") {
-        return Err(Error::computation(format!(
-            "a formula cannot be typeset: {latex}"
-        )));
+        return Err(refused("a command or a bracket is not understood"));
+    }
+    if !is_mathml(&text) {
+        return Err(refused("it brings elements that are no MathML"));
     }
     Ok(text.replace(
         &format!(" style=\"color: {MARK_DRAWN}\""),
         " class=\"marked\"",
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::inline;
+
+    /// A formula brings no elements, scripts or styles of its own; it is shown as it is written.
+    #[test]
+    fn formulas_bring_no_elements() {
+        for latex in [
+            r"\operatorname{<img src=x onerror=alert(1)>}",
+            r"\mathop{<img src=x onerror=alert(1)>}",
+            r"\operatorname{</mi></math><script>alert(1)</script>}",
+            r"\operatorname{&lt;b&gt;<b>}",
+            r"\text{<script>alert(1)</script>}",
+            r#"\operatorname{a" onclick="x}"#,
+            "<script>alert(1)</script>",
+            r"x\color{red;background:url(x)} y",
+        ] {
+            let page = inline(latex).into_string();
+            for element in ["<img", "<script", "<b>", "url(", "<a"] {
+                assert!(!page.contains(element), "{latex}: {page}");
+            }
+        }
+        assert!(inline(r"\frac{a^2}{b} \le \operatorname{Re} c").into_string().contains("<mfrac"));
+    }
+
+    #[test]
+    fn formulas_of_any_depth_end() {
+        for piece in ["{", r"\frac", r"\sqrt{", r"\left(", "x^", r"\begin{matrix}", r"\hat", "^"] {
+            for count in [50, 5000, 100_000] {
+                inline(&piece.repeat(count));
+            }
+        }
+    }
 }

@@ -1,10 +1,11 @@
 //! Beyond cubic order of one mode: amplitudes by order, and a mode with its second harmonic.
 
-use super::super::outcome::{Number, Outcome, Table};
+use super::super::outcome::{Beside, Number, Outcome};
+use super::super::table::Table;
 use super::super::study::{Axis, Case, named};
 use super::super::workshop::Workshop;
 use super::draw::picture;
-use super::each;
+use super::{called, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::Result;
 use landau_solver::problem::Problem;
@@ -28,13 +29,13 @@ pub(super) struct Orders<'a> {
     pub reference: &'a [[f64; 2]],
 }
 
-/// The value at each place of an axis, the mode being followed along it; a gap where there is none.
+/// The value at each place of an axis, the mode being followed along it; why there is none where there is none.
 fn along<R>(
     problem: &Problem,
     places: &[f64],
     value: impl Fn(Vec<EigenPair>) -> Result<R>,
     multiples: &[f64],
-) -> Vec<Option<R>> {
+) -> Vec<Result<R>> {
     let mut last: Option<Vec<EigenPair>> = None;
     let mut found = Vec::new();
     for &k in places {
@@ -51,7 +52,16 @@ fn along<R>(
             value(pairs)
         }));
     }
-    found.into_iter().map(Result::ok).collect()
+    found
+}
+
+/// Why a case has no place at all with a value: the reason of its first.
+fn nothing_in<R>(label: &str, values: &[Result<R>]) -> Option<String> {
+    let first = values.first().and_then(|value| value.as_ref().err())?;
+    let count = values.len();
+    let none = values.iter().all(Result::is_err);
+    let label = called(label);
+    none.then(|| format!("{label}: none of {count} places came out; the first: {first}"))
 }
 
 /// A_e over k at every order, and of the Padé approximant, as far as the series converges.
@@ -81,10 +91,11 @@ pub(super) fn orders(shop: &Workshop, cases: &[Case], asked: &Orders) -> Result<
     let mut panel = Panel::new("equilibrium amplitude by order", "k", "A_e");
     for (index, equations) in &found {
         let case = &cases[*index];
+        outcome.failures.extend(nothing_in(&case.label, equations));
         let first = table.rows.len();
         for (k, equation) in places.iter().zip(equations) {
             let value = |of: &dyn Fn(&AmplitudeEquation) -> Option<f64>| {
-                equation.as_ref().and_then(of).unwrap_or(f64::NAN)
+                equation.as_ref().ok().and_then(of).unwrap_or(f64::NAN)
             };
             let mut row = vec![(*index + 1) as f64, *k];
             row.extend(orders.iter().map(|&order| value(&|e| e.equilibrium(order))));
@@ -116,9 +127,10 @@ pub(super) fn orders(shop: &Workshop, cases: &[Case], asked: &Orders) -> Result<
             let quantity = format!("A_e of the Padé approximant at k = {k}");
             let number = Number::new(asked.figure, case, &quantity, named(case, &quantity));
             let number = Number {
-                printed: Some(*amplitude),
-                printed_as: Some(amplitude.to_string()),
-                note: "printed: the fully nonlinear state".to_owned(),
+                reference: Some(Beside {
+                    label: "fully nonlinear".to_owned(),
+                    value: *amplitude,
+                }),
                 ..number
             };
             outcome
@@ -193,8 +205,9 @@ pub(super) fn second_harmonic(shop: &Workshop, cases: &[Case], over: &Axis) -> R
     let mut states = Table::new(&["case", "k", "|z1|", "|z2|", "stable", "next order"]);
     for (index, rows) in &found {
         let number = (*index + 1) as f64;
+        outcome.failures.extend(nothing_in(&cases[*index].label, rows));
         for (k, found) in places.iter().zip(rows) {
-            let Some(Pair {
+            let Ok(Pair {
                 system,
                 states: own_states,
             }) = found

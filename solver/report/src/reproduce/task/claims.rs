@@ -1,7 +1,8 @@
-//! Statements of the source, decided by numbers: holds, fails (where, by how much), or undecided.
+//! Statements decided by numbers: met, missed (where, by how much), or undecided.
 
-use super::super::outcome::{Claim, Number, Outcome, Verdict};
-use super::super::study::{Case, Quantity, Statement, Trend, named};
+use super::super::claim::{Claim, Decision};
+use super::super::outcome::{Number, Outcome};
+use super::super::study::{Case, Quantity, Statement, Trend, named, percent};
 use super::super::workshop::Workshop;
 use super::each;
 use super::planes::crest;
@@ -130,46 +131,163 @@ fn where_largest(
     Ok((place, 0.5 * step))
 }
 
-/// Whether a value meets the statement; nothing where its error leaves that open.
-fn meets(
-    statement: &Statement,
+/// Values that a statement compares one with.
+#[derive(Clone, Copy, Default)]
+struct Others {
+    /// Of the first case, where this is another and it has an answer.
     first: Option<Value>,
+    /// Of the case before, where it has an answer.
     before: Option<Value>,
-    (value, error): Value,
-) -> Option<bool> {
-    let beyond = |distance: f64| match distance.abs() > error {
-        true => Some(distance > 0.0),
-        false => None,
-    };
-    let mut demands: Vec<Option<bool>> = Vec::new();
-    demands.extend(statement.above.map(|bound| beyond(value - bound)));
-    demands.extend(statement.below.map(|bound| beyond(bound - value)));
-    if let (Some(share), Some((reference, _))) = (statement.as_first_within, first) {
-        demands.push(beyond(share * reference.abs() - (value - reference).abs()));
+    /// Whether this is the first case, with which others are compared.
+    is_first: bool,
+}
+
+/// A demand on a value: whether it is met, and the bound with what stands against it.
+struct Demand {
+    met: Option<bool>,
+    bound: String,
+    measured: String,
+    /// How far the value lies on the wrong side, relative to the bound.
+    missed_by: f64,
+}
+
+impl Demand {
+    /// A demand that a distance be positive, beyond its error.
+    fn positive(distance: f64, error: f64, bound: (String, f64), measured: String) -> Self {
+        let (bound, size) = bound;
+        Demand {
+            met: if distance.abs() > error {
+                Some(distance > 0.0)
+            } else {
+                None
+            },
+            bound,
+            measured,
+            missed_by: -distance / size.abs().max(f64::MIN_POSITIVE),
+        }
     }
-    // The first is the one that the others are apart from.
-    if let (Some(share), Some((reference, _))) = (statement.apart_from_first, first)
-        && value != reference
-    {
-        demands.push(beyond((value - reference).abs() - share * reference.abs()));
+
+    /// One that cannot be looked at: what it compares with is missing.
+    fn open() -> Self {
+        Demand {
+            met: None,
+            bound: String::new(),
+            measured: String::new(),
+            missed_by: 0.0,
+        }
     }
-    if let (Some(trend), Some((last, also))) = (statement.trend, before) {
-        let gain = match trend {
-            Trend::Rising => value - last,
-            Trend::Falling => last - value,
+}
+
+/// A number as evidence has it.
+fn short(value: f64) -> String {
+    let digits: f64 = format!("{value:.4e}").parse().unwrap_or(value);
+    if digits != 0.0 && !(1e-4..1e6).contains(&digits.abs()) {
+        format!("{digits:e}")
+    } else {
+        digits.to_string()
+    }
+}
+
+/// Everything that a statement demands of a value.
+fn demands(statement: &Statement, others: Others, (value, error): Value) -> Vec<Demand> {
+    let mut demands = Vec::new();
+    let bound = |bound: f64| (short(bound), bound);
+    if let Some(above) = statement.above {
+        demands.push(Demand::positive(value - above, error, bound(above), short(value)));
+    }
+    if let Some(below) = statement.below {
+        demands.push(Demand::positive(below - value, error, bound(below), short(value)));
+    }
+    // Shares of the first case's value, which is known to its own error.
+    let shares = [(statement.as_first_within, 1.0), (statement.apart_from_first, -1.0)];
+    for (share, sign) in shares {
+        let Some(share) = share.filter(|_| !others.is_first) else {
+            continue;
         };
-        demands.push(match gain.abs() > error + also {
-            true => Some(gain > 0.0),
-            false => None,
+        demands.push(match others.first {
+            Some((first, also)) => {
+                let (size, apart) = (first.abs(), (value - first).abs());
+                let error = error + (1.0 + share) * also;
+                let measured = percent(apart / size);
+                let bound = (percent(share), share * size);
+                Demand::positive(sign * (share * size - apart), error, bound, measured)
+            }
+            None => Demand::open(),
         });
     }
-    if demands.contains(&Some(false)) {
-        return Some(false);
+    if let Some(trend) = statement.trend.filter(|_| !others.is_first) {
+        demands.push(match others.before {
+            Some((last, also)) => {
+                let gain = match trend {
+                    Trend::Rising => value - last,
+                    Trend::Falling => last - value,
+                };
+                let bound = (short(last), last);
+                Demand::positive(gain, error + also, bound, short(value))
+            }
+            None => Demand::open(),
+        });
     }
     demands
-        .into_iter()
-        .collect::<Option<Vec<bool>>>()
-        .map(|_| true)
+}
+
+/// Whether all demands are met; nothing where one is open and none is missed.
+fn all_met(demands: &[Demand]) -> Option<bool> {
+    if demands.iter().any(|demand| demand.met == Some(false)) {
+        return Some(false);
+    }
+    let met: Option<Vec<bool>> = demands.iter().map(|demand| demand.met).collect();
+    met.map(|_| true)
+}
+
+/// What the values of all cases say of a statement; `missing` says why others have none.
+fn decided(
+    statement: &Statement,
+    cases: &[Case],
+    values: &[(usize, Value)],
+    missing: &[String],
+) -> Decision {
+    let of = |index: usize| values.iter().find(|(i, _)| *i == index).map(|(_, v)| *v);
+    let mut evidence = missing.to_vec();
+    let (mut verdicts, mut worst): (Vec<Option<bool>>, Option<(f64, String)>) = (Vec::new(), None);
+    for (index, value) in values {
+        let others = Others {
+            first: of(0),
+            before: index.checked_sub(1).and_then(of),
+            is_first: *index == 0,
+        };
+        let demands = demands(statement, others, *value);
+        let met = all_met(&demands);
+        let label = named(&cases[*index], &statement.name);
+        let word = match met {
+            _ if demands.is_empty() => "the case that others are compared with",
+            Some(true) => "met",
+            Some(false) => "missed",
+            None => "undecided",
+        };
+        evidence.push(format!("{label} = {:.6} ± {:.1e}: {word}", value.0, value.1));
+        for demand in demands.iter().filter(|demand| demand.met == Some(false)) {
+            if worst.as_ref().is_none_or(|(most, _)| demand.missed_by > *most) {
+                worst = Some((
+                    demand.missed_by,
+                    format!("at {}: {}", demand.bound, demand.measured),
+                ));
+            }
+        }
+        verdicts.push(met);
+    }
+    let met = if verdicts.contains(&Some(false)) {
+        Some(false)
+    } else if missing.is_empty() && verdicts.iter().all(|v| *v == Some(true)) {
+        Some(true)
+    } else {
+        None
+    };
+    Decision {
+        met,
+        measured: worst.map(|(_, measured)| measured),
+        evidence,
+    }
 }
 
 pub(super) fn claims(
@@ -182,96 +300,113 @@ pub(super) fn claims(
     for statement in statements {
         // What has no answer leaves the statement undecided: said there, not as a failure of the study.
         let mut missing = Vec::new();
-        let found = each(cases, &mut missing, |case| {
+        let values = each(cases, &mut missing, |case| {
             value(&shop.setup(case)?, case, statement)
         })?;
-        let first = found.iter().find(|(index, _)| *index == 0).map(|(_, v)| *v);
-        let mut verdicts = Vec::new();
-        let mut evidence = missing.clone();
-        for (index, value) in &found {
-            // The case before, where that has an answer.
-            let earlier = found.iter().find(|(other, _)| other + 1 == *index);
-            let verdict = meets(statement, first, earlier.map(|(_, v)| *v), *value);
-            let word = match verdict {
-                Some(true) => "holds",
-                Some(false) => "fails",
-                None => "undecided",
-            };
+        for (index, value) in &values {
             let label = named(&cases[*index], &statement.name);
-            evidence.push(format!(
-                "{label} = {:.6} ± {:.1e}: {word}",
-                value.0, value.1
-            ));
-            verdicts.push(verdict);
             let number = Number::new(figure, &cases[*index], &statement.name, label);
             outcome.numbers.push(Number {
-                decides: Some(statement.says.clone()),
+                decides: Some(statement.words().to_owned()),
                 ..number.answered(value.0, Some(value.1))
             });
         }
-        let verdict = if verdicts.contains(&Some(false)) {
-            Verdict::Fails
-        } else if missing.is_empty() && verdicts.iter().all(|v| *v == Some(true)) {
-            Verdict::Holds
-        } else {
-            Verdict::Undecided
-        };
-        outcome.claims.push(Claim {
-            figure: figure.to_owned(),
-            says: statement.says.clone(),
-            verdict,
-            evidence,
-        });
+        let decision = decided(statement, cases, &values, &missing);
+        outcome.claims.push(Claim::new(figure, statement, decision));
     }
     Ok(outcome)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Quantity, Statement, Trend, meets};
+    use super::super::super::study::Threshold;
+    use super::{Case, Quantity, Statement, Trend, Value, decided};
 
-    fn statement(above: Option<f64>, below: Option<f64>, within: Option<f64>) -> Statement {
+    fn statement() -> Statement {
         Statement {
-            says: String::new(),
-            name: String::new(),
+            quote: None,
+            section: None,
+            says: None,
+            threshold: Threshold::Ours,
+            name: "a".to_owned(),
             quantity: Quantity::A0,
             at: None,
             over: None,
-            above,
-            below,
-            as_first_within: within,
+            above: None,
+            below: None,
+            as_first_within: None,
             apart_from_first: None,
             column: None,
             trend: None,
         }
     }
 
+    /// The verdict on values of one case after another, and what misses the bound.
+    fn verdict(statement: &Statement, values: &[Value]) -> (Option<bool>, Option<String>) {
+        let cases = vec![Case::default(); values.len()];
+        let values: Vec<(usize, Value)> = values.iter().copied().enumerate().collect();
+        let decision = decided(statement, &cases, &values, &[]);
+        (decision.met, decision.measured)
+    }
+
     #[test]
     fn what_an_error_leaves_open_is_open() {
-        let above = statement(Some(1.0), None, None);
-        assert_eq!(meets(&above, None, None, (1.5, 0.1)), Some(true));
-        assert_eq!(meets(&above, None, None, (0.5, 0.1)), Some(false));
-        assert_eq!(meets(&above, None, None, (1.05, 0.1)), None);
-        let band = statement(Some(0.0), Some(1.0), None);
-        assert_eq!(meets(&band, None, None, (0.5, 0.1)), Some(true));
-        assert_eq!(meets(&band, None, None, (2.0, 0.1)), Some(false));
+        let above = Statement {
+            above: Some(1.0),
+            ..statement()
+        };
+        assert_eq!(verdict(&above, &[(1.5, 0.1)]), (Some(true), None));
+        let missed = Some("at 1: 0.5".to_owned());
+        assert_eq!(verdict(&above, &[(0.5, 0.1)]), (Some(false), missed));
+        assert_eq!(verdict(&above, &[(1.05, 0.1)]), (None, None));
+        let band = Statement {
+            below: Some(2.0),
+            ..above.clone()
+        };
+        assert_eq!(verdict(&band, &[(1.5, 0.1)]).0, Some(true));
+        assert_eq!(verdict(&band, &[(3.0, 0.1)]).0, Some(false));
+    }
+
+    #[test]
+    fn cases_are_compared_with_one_another() {
         let rising = Statement {
             trend: Some(Trend::Rising),
-            ..statement(None, None, None)
+            ..statement()
         };
-        let step = |last, value| meets(&rising, None, Some((last, 0.1)), (value, 0.1));
+        let step = |last, value| verdict(&rising, &[(last, 0.1), (value, 0.1)]).0;
         assert_eq!(
             [step(1.0, 2.0), step(2.0, 1.0), step(1.0, 1.15)],
             [Some(true), Some(false), None]
         );
-        let same = statement(None, None, Some(0.01));
-        assert_eq!(
-            meets(&same, Some((2.0, 0.0)), None, (2.01, 1e-3)),
-            Some(true)
-        );
-        assert_eq!(
-            meets(&same, Some((2.0, 0.0)), None, (2.1, 1e-3)),
-            Some(false)
-        );
+        let same = Statement {
+            as_first_within: Some(0.01),
+            ..statement()
+        };
+        let first = (2.0, 0.0);
+        assert_eq!(verdict(&same, &[first, (2.01, 1e-3)]).0, Some(true));
+        let missed = Some("at 1 %: 1.5 %".to_owned());
+        assert_eq!(verdict(&same, &[first, (2.03, 1e-3)]), (Some(false), missed));
+        // The error of the first case counts too.
+        assert_eq!(verdict(&same, &[(2.0, 0.1), (2.03, 0.0)]).0, None);
+        // A case equal to the first is not apart from it.
+        let apart = Statement {
+            apart_from_first: Some(0.01),
+            ..statement()
+        };
+        assert_eq!(verdict(&apart, &[first, (2.5, 0.0)]).0, Some(true));
+        assert_eq!(verdict(&apart, &[first, first]).0, Some(false));
+    }
+
+    /// Without the first case nothing is decided about the others.
+    #[test]
+    fn a_missing_case_leaves_the_statement_open() {
+        let same = Statement {
+            as_first_within: Some(0.01),
+            ..statement()
+        };
+        let cases = vec![Case::default(); 2];
+        let missing = ["lost".to_owned()];
+        let decision = decided(&same, &cases, &[(1, (2.0, 0.0))], &missing);
+        assert_eq!(decision.met, None);
     }
 }

@@ -1,11 +1,12 @@
 //! How a0 and a2 come nearer with the number of collocation points.
 
-use super::super::outcome::{Number, Outcome, Table};
+use super::super::outcome::{Number, Outcome};
 use super::super::study::{Axis, Case, at_each, named};
+use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
-use super::rows::rows;
+use super::rows::{nothing_in, rows};
 use crate::figure::{Panel, Style};
 use landau_solver::error::Result;
 use landau_solver::study::row::{Column, Row, column};
@@ -41,6 +42,7 @@ pub(super) fn convergence(
         let finest = of_case(first + resolutions.len() - 1);
         for (index, resolution) in resolutions.iter().enumerate() {
             let (own, label) = (of_case(first + index), &all[first + index].label);
+            outcome.failures.extend(nothing_in(label, own));
             let style = if index + 1 == resolutions.len() {
                 Style::Line
             } else {

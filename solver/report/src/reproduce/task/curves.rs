@@ -1,22 +1,38 @@
 //! Landau coefficients along an axis, the 2:1 resonance, power laws at a bifurcation.
 
-use super::super::outcome::{Number, Outcome, Table};
+use super::super::outcome::{Number, Outcome};
 use super::super::study::{Asked, Axis, Case, Drawn, Of, Reference, Together, named};
+use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
 use super::points::{critical_point, question};
-use super::rows::rows;
+use super::rows::{nothing_in, rows};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
-use landau_solver::file::{TEXT_LIMIT, read_text};
 use landau_solver::study::Silent;
 use landau_solver::study::critical::{self, Critical};
 use landau_solver::study::row::{Column, NUMBERS, Row, column};
 use rayon::prelude::*;
 
-/// The critical points of the first case that are to be marked: numbers too, whether they come out or not.
+/// The critical points that are to be marked: those of the first case. They are numbers too, and so are those of any
+/// other case that has them printed, whether they come out or not.
 fn marked(
+    shop: &Workshop,
+    figure: &str,
+    cases: &[Case],
+    marks: &[Asked],
+    outcome: &mut Outcome,
+) -> Result<Vec<(Asked, Critical)>> {
+    for case in &cases[1..] {
+        let printed = marks.iter().filter(|m| case.printed.contains_key(&m.name));
+        let printed: Vec<Asked> = printed.cloned().collect();
+        marked_of(shop, figure, case, &printed, outcome)?;
+    }
+    marked_of(shop, figure, &cases[0], marks, outcome)
+}
+
+fn marked_of(
     shop: &Workshop,
     figure: &str,
     case: &Case,
@@ -80,19 +96,20 @@ pub(super) struct Wanted<'a> {
     pub over: &'a Axis,
     pub columns: &'a [Together],
     pub marks: &'a [Asked],
+    /// Whether one mode is followed along the axis.
+    pub follow: bool,
     pub logarithmic: [bool; 2],
     pub reference: &'a [Reference],
 }
 
 /// The points of somebody else's curve.
 fn reference(shop: &Workshop, asked: &Reference) -> Result<Vec<(f64, f64)>> {
-    let path = shop.home.join(&asked.file);
-    let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
-    let text = read_text(&path, TEXT_LIMIT)?;
+    let wrong = |what: String| Error::input(format!("{}: {what}", asked.file));
+    let text = shop.study.read_beside(&asked.file)?;
     let point = |(index, line): (usize, &str)| {
         let mut cells = line.split(',').map(|cell| cell.trim().parse::<f64>());
         match (cells.next(), cells.next(), cells.next()) {
-            (Some(Ok(x)), Some(Ok(y)), None) => Ok((x, y)),
+            (Some(Ok(x)), Some(Ok(y)), None) if x.is_finite() && y.is_finite() => Ok((x, y)),
             _ => Err(wrong(format!(
                 "line {} is not two numbers with a comma between",
                 index + 1
@@ -121,7 +138,7 @@ pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<
         rows(&setup, case.k, &over.name, over.values(), &derived)
     })?;
     let printed = printed(&cases[0], marks);
-    let marks = marked(shop, wanted.figure, &cases[0], marks, &mut outcome)?;
+    let marks = marked(shop, wanted.figure, cases, marks, &mut outcome)?;
     let ends = marks.iter().filter(|(asked, _)| asked.of != Of::C2);
     let ends: Vec<f64> = ends.map(|(_, point)| point.value).collect();
     let names = |column: &Drawn| -> (String, String) {
@@ -153,6 +170,7 @@ pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<
     let mut unconverged = 0;
     for (index, rows) in &found {
         let label = &cases[*index].label;
+        outcome.failures.extend(nothing_in(label, rows));
         for (panel, together) in drawn.iter_mut().zip(columns) {
             for quantity in together.drawn() {
                 // In a panel of several quantities, each by its name.
@@ -216,8 +234,9 @@ pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<
     }
     let caption = match unconverged {
         0 => String::new(),
+        1 => "1 point without a converged c2 is left out: the column `status` says why".to_owned(),
         count => {
-            format!("{count} points without a converged value are left out; the table says why.")
+            format!("{count} points without a converged c2 are left out: the column `status` says why")
         }
     };
     picture(shop, &mut outcome, &caption, &drawn, table);
@@ -239,12 +258,15 @@ pub(super) fn resonance(
         Ok((one, rows(&setup, None, "k", doubled, &[])?))
     })?;
     let mut panel = Panel::new("2:1 resonance", "k", "a0");
-    for (asked, point) in marked(shop, figure, &cases[0], marks, &mut outcome)? {
+    for (asked, point) in marked(shop, figure, cases, marks, &mut outcome)? {
         panel.marks.push((point.value, asked.name.clone()));
     }
     let mut table = Table::new(&["case", "k", "a0(k)", "a0(2k)/2"]).with_words(&["label"]);
     for (index, (one, two)) in &found {
         let label = &cases[*index].label;
+        for rows in [one, two] {
+            outcome.failures.extend(nothing_in(label, rows));
+        }
         let value = |row: &Row| row.c0.map_or(f64::NAN, |c| c[0]);
         let first = one.iter().map(|r| (r.coordinates[0], value(r)));
         let second = one.iter().zip(two);
@@ -273,15 +295,16 @@ pub(super) fn power_law(
     let found = each(cases, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
         let question = question(&setup, case, asked)?;
-        let critical = critical::critical(&setup, question, &Silent)?;
-        let place = critical[0].value;
+        let critical = critical::critical(&setup, question, &Silent)?.swap_remove(0);
+        let (place, error) = (critical.value, critical.error);
         let [near, far] = distances.map(f64::abs);
-        let steps = (count.max(3) - 1) as f64;
-        let relative: Vec<f64> = (0..count.max(3))
+        let steps = (count - 1) as f64;
+        let relative: Vec<f64> = (0..count)
             .map(|i| distances[0].signum() * near * (far / near).powf(i as f64 / steps))
             .collect();
         let values = relative.iter().map(|d| place * (1.0 + d)).collect();
-        let rows = rows(&setup, case.k, &asked.vary, values, &[])?;
+        let k = asked.k.or(case.k);
+        let rows = rows(&setup, k, &asked.vary, values, &[])?;
         let points: Vec<(f64, f64)> = relative
             .iter()
             .zip(&rows)
@@ -290,7 +313,7 @@ pub(super) fn power_law(
         if points.len() < 3 {
             return Err(Error::computation("too few equilibria for a fit"));
         }
-        Ok((place, points))
+        Ok((place, error, points))
     })?;
     let mut panel = Panel::new(
         "distance from the bifurcation",
@@ -299,7 +322,7 @@ pub(super) fn power_law(
     );
     panel.logarithmic = [true, true];
     let mut table = Table::new(&["case", "distance", "A_e"]);
-    for (index, (place, points)) in found {
+    for (index, (place, error, points)) in found {
         let case = &cases[index];
         let slope = slope(&points);
         for &(distance, amplitude) in &points {
@@ -313,9 +336,12 @@ pub(super) fn power_law(
         let law = points.iter().map(|p| (p.0, a * (p.0 / d).sqrt())).collect();
         panel.curve(&label, Style::Dots, points);
         panel.curve("slope 1/2", Style::Dashed, law);
-        for (quantity, ours) in [(asked.name.as_str(), place), ("exponent", slope)] {
+        for (quantity, ours, error) in [
+            (asked.name.as_str(), place, Some(error)),
+            ("exponent", slope, None),
+        ] {
             let number = Number::new(figure, case, quantity, named(case, quantity));
-            outcome.numbers.push(number.answered(ours, None));
+            outcome.numbers.push(number.answered(ours, error));
         }
     }
     picture(shop, &mut outcome, "", &[panel], table);

@@ -1,10 +1,11 @@
 //! What the tasks draw: pictures with their tables.
 
-use super::super::outcome::{Outcome, Picture, Table};
+use super::super::outcome::{Outcome, Picture};
+use super::super::table::Table;
 use super::super::workshop::Workshop;
 use crate::figure::{Panel, panels};
 
-/// Adds the panels with their table, where there is anything to draw.
+/// Adds the panels with their table; the table alone where no panel has a value.
 pub(super) fn picture(
     shop: &Workshop,
     outcome: &mut Outcome,
@@ -25,13 +26,16 @@ pub(super) fn picture(
         panel
     };
     let drawn: Vec<Panel> = drawn.iter().map(written).collect();
-    if let Some(drawing) = panels("", &drawn) {
-        outcome.pictures.push(Picture {
-            caption: caption.to_owned(),
-            says: drawing.says.clone(),
-            svg: drawing.svg(),
-            table: Some(table),
-            files: Vec::new(),
-        });
-    }
+    let drawing = panels("", &drawn);
+    let says = match &drawing {
+        Some(drawing) => drawing.says.clone(),
+        None => "Nothing to draw: no value in the columns that are shown.".to_owned(),
+    };
+    outcome.pictures.push(Picture {
+        caption: caption.to_owned(),
+        says,
+        svg: drawing.map(|drawing| drawing.svg()),
+        table: Some(table),
+        files: Vec::new(),
+    });
 }

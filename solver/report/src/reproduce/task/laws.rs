@@ -1,7 +1,8 @@
 //! Constitutive laws, or any expression, over the value of one field.
 
-use super::super::outcome::{Outcome, Table};
+use super::super::outcome::Outcome;
 use super::super::study::{Axis, Case};
+use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
@@ -9,7 +10,63 @@ use crate::figure::{Panel, Style};
 use crate::library::expression;
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{Expression, Jet};
+use landau_solver::study::Setup;
 use std::collections::BTreeMap;
+
+fn compiled(setup: &Setup, expressions: &[String]) -> Result<Vec<Expression>> {
+    let texts = expressions.iter();
+    texts
+        .map(|text| expression(setup.model.as_ref(), text))
+        .collect()
+}
+
+/// The values that an expression is evaluated with: of the field along the axis, and of the others.
+fn jets(
+    setup: &Setup,
+    expression: &Expression,
+    over: &str,
+    at: &BTreeMap<String, f64>,
+    x: f64,
+) -> Result<Vec<f64>> {
+    let structure = setup.model.structure();
+    let jet = |jet: &Jet| match (&structure.fields[jet.of].name, jet) {
+        (_, jet) if jet.x + jet.y + jet.t + jet.absx > 0 => Ok(0.0),
+        (name, _) if name == over => Ok(x),
+        (name, _) => at.get(name).copied().ok_or_else(|| {
+            let text = &expression.written;
+            Error::input(format!(
+                "`{text}` depends on {name}: `at` accepts a value for it"
+            ))
+        }),
+    };
+    expression.jets.iter().map(jet).collect()
+}
+
+/// Whether a model has the fields that a law is drawn over, and they are all that it depends on.
+///
+/// # Errors
+/// A field that is none, an expression that is none or depends on another field.
+pub(in crate::reproduce) fn check(
+    setup: &Setup,
+    expressions: &[String],
+    over: &Axis,
+    at: &BTreeMap<String, f64>,
+) -> Result<()> {
+    let structure = setup.model.structure();
+    for name in at.keys().chain([&over.name]) {
+        if structure.field(name).is_none() {
+            let fields = structure.fields.iter().map(|f| f.name.as_str());
+            let fields = fields.collect::<Vec<_>>().join(", ");
+            return Err(Error::input(format!(
+                "there is no field `{name}`: the fields are {fields}"
+            )));
+        }
+    }
+    for expression in &compiled(setup, expressions)? {
+        jets(setup, expression, &over.name, at, over.from)?;
+    }
+    Ok(())
+}
 
 /// Each expression over one field, the others held at `at`; one panel an expression, one curve a case.
 pub(super) fn law(
@@ -22,35 +79,12 @@ pub(super) fn law(
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
-        let (model, structure) = (setup.model.as_ref(), setup.model.structure());
-        let known = |name: &str| structure.field(name).is_some();
-        for name in at.keys().chain([&over.name]) {
-            if !known(name) {
-                let fields = structure.fields.iter().map(|f| f.name.as_str());
-                let fields = fields.collect::<Vec<_>>().join(", ");
-                return Err(Error::input(format!(
-                    "there is no field `{name}`: the fields are {fields}"
-                )));
-            }
-        }
         let base = setup.base(None)?;
         let point = base.at_end(landau_solver::model::End::Lower);
-        let compiled = expressions.iter().map(|text| expression(model, text));
-        let compiled: Vec<Expression> = compiled.collect::<Result<_>>()?;
         let mut columns = Vec::new();
-        for expression in &compiled {
+        for expression in &compiled(&setup, expressions)? {
             let value = |x: f64| -> Result<f64> {
-                let jet = |jet: &Jet| match (&structure.fields[jet.of].name, jet) {
-                    (_, jet) if jet.x + jet.y + jet.t + jet.absx > 0 => Ok(0.0),
-                    (name, _) if *name == over.name => Ok(x),
-                    (name, _) => at.get(name).copied().ok_or_else(|| {
-                        let text = &expression.written;
-                        Error::input(format!(
-                            "`{text}` depends on {name}, which `at` gives no value"
-                        ))
-                    }),
-                };
-                let jets: Vec<f64> = expression.jets.iter().map(jet).collect::<Result<_>>()?;
+                let jets: Vec<f64> = jets(&setup, expression, &over.name, at, x)?;
                 Ok(expression.evaluate(&point, &jets))
             };
             let values = over.values().into_iter().map(value);

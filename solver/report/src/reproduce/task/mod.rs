@@ -5,7 +5,7 @@ mod claims;
 mod convergence;
 mod curves;
 mod draw;
-mod laws;
+pub(super) mod laws;
 mod planes;
 mod points;
 mod profiles;
@@ -16,12 +16,46 @@ use super::study::{Case, Task};
 use super::workshop::Workshop;
 use landau_solver::error::{Error, Result};
 use rayon::prelude::*;
+use serde_json::{Map, Value, json};
 
 /// Computes one task of a figure; files that it writes itself begin with `stem`.
 pub(super) fn run(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outcome> {
     let mut outcome = answer(shop, figure, stem, task)?;
     outcome.demand_partners(figure, task.cases());
+    let tables = outcome.pictures.iter_mut();
+    for table in tables.filter_map(|picture| picture.table.as_mut()) {
+        table.cases = described(shop, task.cases())?;
+    }
     Ok(outcome)
+}
+
+/// What each case was computed from, for the description of a table.
+fn described(shop: &Workshop, cases: &[Case]) -> Result<Vec<Value>> {
+    let described = cases.iter().enumerate().map(|(index, case)| {
+        let setup = shop.setup(case)?;
+        let structure = setup.model.structure();
+        let parameters: Map<String, Value> = structure
+            .parameters
+            .pairs()
+            .map(|(id, info)| {
+                let automatic = setup.parameters.automatic[id];
+                let value = setup.parameters.json(structure)[&info.name].clone();
+                let value = if automatic { Value::from("auto") } else { value };
+                (info.name.clone(), value)
+            })
+            .collect();
+        Ok(json!({
+            "case": index + 1,
+            "label": case.label,
+            "model": structure.name,
+            "model_hash": setup.hash(),
+            "parameters": parameters,
+            "k": case.k,
+            "resolution": setup.effective_resolution(),
+            "normalization": structure.amplitude.description,
+        }))
+    });
+    described.collect()
 }
 
 fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outcome> {
@@ -65,10 +99,12 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             over,
             columns,
             mark,
+            follow,
             logarithmic,
             reference,
         } => {
             let wanted = curves::Wanted {
+                follow: *follow,
                 figure,
                 over,
                 columns,
@@ -85,11 +121,6 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             highest,
             reference,
         } => {
-            if highest.is_multiple_of(2) || !(5..=15).contains(highest) {
-                return Err(Error::input(format!(
-                    "figure {figure}: highest = {highest} is no order: it accepts odd numbers from 5 to 15"
-                )));
-            }
             let asked = beyond::Orders {
                 figure,
                 over,
@@ -149,6 +180,11 @@ impl Named for Case {
     }
 }
 
+/// A label, or what stands for none.
+pub(super) fn called(label: &str) -> &str {
+    if label.is_empty() { "the case" } else { label }
+}
+
 /// Every item by itself, in parallel; what fails becomes a sentence.
 fn each<I: Named + Sync, R: Send>(
     items: &[I],
@@ -162,7 +198,7 @@ fn each<I: Named + Sync, R: Send>(
             Ok(value) => found.push((index, value)),
             // A study file that asks for what does not exist is wrong as a whole.
             Err(Error::Input(message)) => return Err(Error::Input(message)),
-            Err(error) => failures.push(format!("{}: {error}", items[index].label())),
+            Err(error) => failures.push(format!("{}: {error}", called(items[index].label()))),
         }
     }
     Ok(found)

@@ -1,7 +1,8 @@
 //! Fields over the plane: patterns, circulation around a vortex.
 
-use super::super::outcome::{Number, Outcome, Picture, Table};
+use super::super::outcome::{Number, Outcome, Picture};
 use super::super::study::{Axis, Case, named};
+use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
@@ -115,13 +116,13 @@ pub(super) fn pattern(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resul
         let mut files = Vec::new();
         for extension in ["npz", "nc"] {
             let name = format!("figure{}-{}.{extension}", wanted.stem, index + 1);
-            data.write(&shop.out.join(&name))?;
+            data.write(&shop.shelf.path(&name)?)?;
             files.push(name);
         }
         outcome.pictures.push(Picture {
             caption: case.label.clone(),
             says: drawing.says.clone(),
-            svg: drawing.svg(),
+            svg: Some(drawing.svg()),
             table: None,
             files,
         });
@@ -192,8 +193,7 @@ pub(super) fn circulation(
         .iter()
         .flat_map(|case| {
             over.values().into_iter().map(|value| {
-                let mut moved = case.clone();
-                moved.label = named(case, &format!("{} = {value}", over.name));
+                let mut moved = case.moved(&format!("{} = {value}", over.name));
                 moved.set.push(format!("{}={value}", over.name));
                 moved
             })

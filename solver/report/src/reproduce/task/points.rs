@@ -1,16 +1,17 @@
 //! Single numbers beside the printed ones: critical points, Landau points.
 
-use super::super::outcome::{Number, Outcome, Table};
+use super::super::outcome::{Number, Outcome};
 use super::super::study::{Asked, Axis, Case, Of, named};
+use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::rows::rows;
 use super::{Named, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
-use landau_solver::study::accuracy::accuracy;
 use landau_solver::study::critical::{self, Critical, Quantity, Question};
 use landau_solver::study::minimise;
+use landau_solver::study::point::PointReport;
 use landau_solver::study::{self, Setup, Silent};
 use landau_solver::weakly::Selection;
 
@@ -62,11 +63,10 @@ fn along(cases: &[Case], against: Option<&Axis>) -> Vec<(Case, Option<f64>)> {
     let mut moved = Vec::new();
     for case in cases {
         for value in axis.values() {
-            let mut case = case.clone();
             // Without the last digits of a step.
             let shown = format!("{value:.10}");
             let shown = shown.trim_end_matches('0').trim_end_matches('.');
-            case.label = named(&case, &format!("{} = {shown}", axis.name));
+            let mut case = case.moved(&format!("{} = {shown}", axis.name));
             match axis.name.as_str() {
                 "k" => case.k = Some(value),
                 name => case.set.push(format!("{name}={value}")),
@@ -161,6 +161,40 @@ pub(super) fn critical(
     Ok(outcome)
 }
 
+/// A quantity of a Landau point: its value and error, or why it has none.
+type Answer = std::result::Result<(f64, Option<f64>), String>;
+
+/// a0, a2, A_e and derived columns of a case.
+fn landau_point(setup: &Setup, k: f64, columns: &[String]) -> Result<Vec<Answer>> {
+    let none = || "no equilibrium at cubic order".to_owned();
+    // The row answers for what the point leaves open: where c2 is not converged, a0 may be.
+    let row = rows(setup, None, "k", vec![k], columns)?.remove(0);
+    let mut answers: Vec<Answer> = match PointReport::compute(setup, k, Selection::Leading, 3) {
+        Ok(point) => vec![
+            Ok((point.c0.re, Some(point.error.c0))),
+            Ok((point.c2.re, Some(point.error.c2))),
+            point.amplitude.map(|a| (a, None)).ok_or_else(none),
+        ],
+        Err(Error::Input(message)) => return Err(Error::Input(message)),
+        Err(error) => {
+            let reason = error.to_string();
+            let a0 = row.c0.map(|c0| (c0[0], row.c0_error));
+            vec![
+                a0.ok_or_else(|| reason.clone()),
+                Err(reason.clone()),
+                Err(reason),
+            ]
+        }
+    };
+    let open = answers[1].as_ref().err().cloned();
+    answers.extend(row.derived.into_iter().map(|value| match (&open, value) {
+        (Some(reason), _) => Err(reason.clone()),
+        (None, Some(value)) => Ok((value, None)),
+        (None, None) => Err(none()),
+    }));
+    Ok(answers)
+}
+
 /// a0, a2, A_e and derived columns of each case.
 pub(super) fn values(
     shop: &Workshop,
@@ -169,36 +203,30 @@ pub(super) fn values(
     columns: &[String],
 ) -> Result<Outcome> {
     let mut outcome = Outcome::default();
-    let found = each(cases, &mut outcome.failures, |case| {
+    let points = each(cases, &mut outcome.failures, |case| {
         let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
         let k = case.k.ok_or_else(missing)?;
-        let setup = shop.setup(case)?;
-        let point = setup.point(&setup.base(None)?, k, Selection::Leading)?;
-        let error = accuracy(&setup, &point)?;
-        let mut values = vec![
-            (Some(point.c0.re), Some(error.c0)),
-            (Some(point.c2.re), Some(error.c2)),
-            (point.amplitude(), None),
-        ];
-        if !columns.is_empty() {
-            let row = rows(&setup, None, "k", vec![k], columns)?.remove(0);
-            values.extend(row.derived.into_iter().map(|value| (value, None)));
-        }
-        Ok(values)
+        landau_point(&shop.setup(case)?, k, columns)
     })?;
-    let mut found = found.into_iter().peekable();
+    let mut points = points.into_iter().peekable();
     for (index, case) in cases.iter().enumerate() {
-        let own = found.next_if(|(found, _)| *found == index);
+        let answers = points.next_if(|(answered, _)| *answered == index);
         let quantities = ["a0", "a2", "A_e"].into_iter();
         let quantities = quantities.chain(columns.iter().map(String::as_str));
         for (position, quantity) in quantities.enumerate() {
-            let number = Number::new(figure, case, quantity, named(case, quantity));
-            outcome.numbers.push(match &own {
-                Some((_, values)) => match values[position] {
-                    (Some(value), error) => number.answered(value, error),
-                    (None, _) => number.failed("no equilibrium at cubic order"),
-                },
-                None => number.failed(&outcome.reason(&case.label)),
+            let label = named(case, quantity);
+            let number = Number::new(figure, case, quantity, label.clone());
+            let answer = match &answers {
+                Some((_, answers)) => answers[position].clone(),
+                None => Err(outcome.reason(&case.label)),
+            };
+            // A growth rate or a coefficient that is missing is a failure; a stable base state has no amplitude.
+            if let (Err(reason), true) = (&answer, position < 2 && answers.is_some()) {
+                outcome.failures.push(format!("{label}: {reason}"));
+            }
+            outcome.numbers.push(match answer {
+                Ok((value, error)) => number.answered(value, error),
+                Err(reason) => number.failed(&reason),
             });
         }
     }

@@ -1,7 +1,8 @@
 //! Base states over the cross-stream coordinate, and spectra over the wavenumber.
 
-use super::super::outcome::{Number, Outcome, Table};
+use super::super::outcome::{Number, Outcome};
 use super::super::study::{Axis, Case, Mark, PanelOf, Tail, at_each, named};
+use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
