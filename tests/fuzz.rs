@@ -154,7 +154,11 @@ fn damaged_studies_end_quickly() {
     };
     let folder = tempfile::tempdir().expect("a folder");
     let studies = root().join("spec/studies");
-    for name in ["rolls.model", "vibrated_disks.model", "clever_busse_1974.csv"] {
+    for name in [
+        "rolls.model",
+        "vibrated_disks.model",
+        "clever_busse_1974.csv",
+    ] {
         fs::copy(studies.join(name), folder.path().join(name)).expect("copied");
     }
     let read = |name: &str| fs::read_to_string(studies.join(name)).expect(name);
@@ -203,7 +207,16 @@ fn damaged(text: &str) -> Vec<String> {
     });
     let mut list: Vec<String> = left_out.collect();
     let numbers: Vec<(usize, usize)> = numbers(text);
-    let values = ["0", "-1", "nan", "inf", "1e300", "-1e-300", "1000000000", "0.5"];
+    let values = [
+        "0",
+        "-1",
+        "nan",
+        "inf",
+        "1e300",
+        "-1e-300",
+        "1000000000",
+        "0.5",
+    ];
     let step = (numbers.len() / REPLACED).max(1);
     for (count, (start, end)) in numbers.iter().step_by(step).enumerate() {
         let value = values[count % values.len()];
@@ -219,12 +232,15 @@ fn numbers(text: &str) -> Vec<(usize, usize)> {
     let mut list = Vec::new();
     let mut at = 0;
     while at < bytes.len() {
-        let starts = bytes[at].is_ascii_digit() && (at == 0 || matches!(bytes[at - 1], b' ' | b'['));
+        let starts =
+            bytes[at].is_ascii_digit() && (at == 0 || matches!(bytes[at - 1], b' ' | b'['));
         if !starts {
             at += 1;
             continue;
         }
-        let end = (at..bytes.len()).find(|&i| !part(bytes[i])).unwrap_or(bytes.len());
+        let end = (at..bytes.len())
+            .find(|&i| !part(bytes[i]))
+            .unwrap_or(bytes.len());
         list.push((at, end));
         at = end;
     }

@@ -116,7 +116,10 @@ fn a_kept_task_knows_its_reference() {
     let desk = Desk::new();
     fs::write(desk.path("points.csv"), "k,a0\n0.9,0.1\n").expect("written");
     let reference = "reference = [{ file = \"points.csv\", label = \"others\" }]\n";
-    let text = study(&SWEEP.replace("[[figure.task.case]]", &format!("{reference}[[figure.task.case]]")));
+    let text = study(&SWEEP.replace(
+        "[[figure.task.case]]",
+        &format!("{reference}[[figure.task.case]]"),
+    ));
     assert_eq!(desk.reproduce(&text).status, 0);
     let before = desk.read("report/figure1-1.svg");
     fs::write(desk.path("points.csv"), "k,a0\n0.9,0.2\n").expect("written");
@@ -197,7 +200,11 @@ fn ids_are_names_of_files() {
 fn a_killed_report_goes_on() {
     let desk = Desk::new();
     let sweeps: String = (0..6)
-        .map(|i| SWEEP.replace("r=0.3", &format!("r=0.3{i}")).replace("count = 5", "count = 400"))
+        .map(|i| {
+            SWEEP
+                .replace("r=0.3", &format!("r=0.3{i}"))
+                .replace("count = 5", "count = 400")
+        })
         .collect();
     let text = study(&sweeps);
     let start = Instant::now();
@@ -236,7 +243,11 @@ fn a_killed_report_goes_on() {
             assert!(fs::read(&path).is_ok_and(|now| now == content), "{path:?}");
         }
         let named = |(path, _): &(PathBuf, Vec<u8>)| {
-            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let name = path
+                .file_name()
+                .unwrap_or_default()
+                .to_string_lossy()
+                .into_owned();
             !name.starts_with(".landau-") || name == ".landau-report"
         };
         let after: Vec<(PathBuf, Vec<u8>)> = files(&desk.path("report"))
@@ -268,10 +279,19 @@ text = "<script>alert(1)</script>"
 latex = '\operatorname{<img src=x onerror=alert(1)>}'
 "#;
     let text = study(SWEEP)
-        .replace("title = \"t\"", &format!("title = \"{evil}\"\nintroduction = \"{evil}\""))
+        .replace(
+            "title = \"t\"",
+            &format!("title = \"{evil}\"\nintroduction = \"{evil}\""),
+        )
         .replace("source = \"s\"", &format!("source = \"{evil}\""))
-        .replace("title = \"f\"", &format!("title = \"{evil}\"\ntext = \"{evil}\""))
-        .replace("label = \"r = 0.3\"", &format!("label = \"{evil}\"\nnote = \"{evil}\""))
+        .replace(
+            "title = \"f\"",
+            &format!("title = \"{evil}\"\ntext = \"{evil}\""),
+        )
+        .replace(
+            "label = \"r = 0.3\"",
+            &format!("label = \"{evil}\"\nnote = \"{evil}\""),
+        )
         .replace("[[figure]]", &format!("{symbol}[[figure]]"));
     let answer = desk.reproduce(&text);
     assert_eq!(answer.status, 0, "{}", answer.err);
@@ -291,8 +311,14 @@ fn texts_can_be_shown() {
     for (text, told) in [
         (study(SWEEP).replace("\"f\"", "\"f\\u0007\""), "U+0007"),
         (study(SWEEP).replace("\"t\"", "\"t\\u202Et\""), "U+202E"),
-        (study(SWEEP).replace("\"r = 0.3\"", "\"=1+1\""), "spreadsheet"),
-        (study(SWEEP).replace("\"r = 0.3\"", "\"@SUM(A1)\""), "spreadsheet"),
+        (
+            study(SWEEP).replace("\"r = 0.3\"", "\"=1+1\""),
+            "spreadsheet",
+        ),
+        (
+            study(SWEEP).replace("\"r = 0.3\"", "\"@SUM(A1)\""),
+            "spreadsheet",
+        ),
         (study(SWEEP).replace("\"f\"", "\"\"\"f\nf\"\"\""), "U+000A"),
     ] {
         let answer = desk.reproduce(&text);
@@ -321,7 +347,11 @@ printed = { k_l = 99.0, l = 3.0 }
 "#;
     let answer = desk.reproduce(&study(tasks));
     assert_eq!(answer.status, 3, "{}", answer.err);
-    assert!(answer.err.contains("nothing in this task is called so"), "{}", answer.err);
+    assert!(
+        answer.err.contains("nothing in this task is called so"),
+        "{}",
+        answer.err
+    );
     let numbers = desk.json("numbers.json");
     let of = |printed: f64| {
         let number = numbers.iter().find(|n| n["printed"] == printed);
@@ -348,12 +378,22 @@ balance { e: dt(u) = sqrt(r)*u + dx(dx(u)) - u^3; }
 base { u = 0; }
 ";
     fs::write(desk.path("lost.model"), model).expect("written");
-    let tasks = SWEEP.replace("set = [\"r=0.3\"]", "set = [\"r=-1\"]\nmodel = \"lost.model\"");
+    let tasks = SWEEP.replace(
+        "set = [\"r=0.3\"]",
+        "set = [\"r=-1\"]\nmodel = \"lost.model\"",
+    );
     let answer = desk.reproduce(&study(&tasks));
     assert_eq!(answer.status, 3, "{} {}", answer.out, answer.err);
-    assert!(answer.err.contains("none of 5 points came out"), "{}", answer.err);
+    assert!(
+        answer.err.contains("none of 5 points came out"),
+        "{}",
+        answer.err
+    );
     let page = desk.read("report/index.html");
-    assert!(page.contains("Did not come out: r = 0.3: none of 5 points"), "{page}");
+    assert!(
+        page.contains("Did not come out: r = 0.3: none of 5 points"),
+        "{page}"
+    );
     // The table stays, with the reason in every row.
     assert_eq!(desk.read("report/figure1-1.csv").lines().count(), 6);
 }
@@ -390,7 +430,11 @@ k = 1.0
 ";
     let answer = desk.reproduce(&study(bound));
     assert_eq!(answer.status, 2, "{}", answer.err);
-    assert!(answer.err.contains("nothing decides the statement"), "{}", answer.err);
+    assert!(
+        answer.err.contains("nothing decides the statement"),
+        "{}",
+        answer.err
+    );
 }
 
 /// What a study was made from is delivered whole; no file replaces another of its name.
@@ -400,7 +444,8 @@ fn sources_are_complete() {
     for folder in ["errata", "one", "two"] {
         fs::create_dir(desk.path(folder)).expect("made");
     }
-    let spec = fs::read_to_string(root().join("spec/models/swift_hohenberg.model")).expect("a spec");
+    let spec =
+        fs::read_to_string(root().join("spec/models/swift_hohenberg.model")).expect("a spec");
     let other = spec.replace("model swift_hohenberg", "model swift_hohenberg_two");
     fs::write(desk.path("one/sh.model"), &spec).expect("written");
     fs::write(desk.path("two/sh.model"), &other).expect("written");
@@ -408,8 +453,14 @@ fn sources_are_complete() {
     let errata = "source = \"printed\"\nformula = []\n";
     fs::write(desk.path("errata/study.toml"), errata).expect("written");
     let reference = "reference = [{ file = \"points.csv\", label = \"others\" }]\n[[figure.task.case]]\nmodel = \"two/sh.model\"\nlabel = \"two\"\n";
-    let text = study(&SWEEP.replace("[[figure.task.case]]", &format!("{reference}[[figure.task.case]]")))
-        .replace("model = \"swift_hohenberg\"", "model = \"one/sh.model\"\nerrata = \"errata/study.toml\"");
+    let text = study(&SWEEP.replace(
+        "[[figure.task.case]]",
+        &format!("{reference}[[figure.task.case]]"),
+    ))
+    .replace(
+        "model = \"swift_hohenberg\"",
+        "model = \"one/sh.model\"\nerrata = \"errata/study.toml\"",
+    );
     let answer = desk.reproduce(&text);
     assert_eq!(answer.status, 0, "{}", answer.err);
     for (name, content) in [
@@ -419,7 +470,11 @@ fn sources_are_complete() {
         ("sh-2.model", &other),
         ("points.csv", "k,a0\n0.9,0.1\n"),
     ] {
-        assert_eq!(desk.read(&format!("report/sources/{name}")), content, "{name}");
+        assert_eq!(
+            desk.read(&format!("report/sources/{name}")),
+            content,
+            "{name}"
+        );
     }
     // The description of a table names what each case was computed from.
     let described: Value =
@@ -427,7 +482,13 @@ fn sources_are_complete() {
     let cases = described["landau:cases"].as_array().expect("cases");
     assert_eq!(cases.len(), 2);
     assert_eq!(cases[1]["parameters"]["r"], 0.3);
-    for key in ["model", "model_hash", "parameters", "normalization", "label"] {
+    for key in [
+        "model",
+        "model_hash",
+        "parameters",
+        "normalization",
+        "label",
+    ] {
         assert!(!cases[0][key].is_null(), "{key}: {described}");
     }
 }

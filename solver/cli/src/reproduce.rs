@@ -77,10 +77,19 @@ pub fn reproduce(
                 number.printed_as.as_deref().unwrap_or("")
             );
         }
-        let mut against: Vec<_> = found.claims.iter().filter(|c| c.verdict.is_against()).collect();
+        let mut against: Vec<_> = found
+            .claims
+            .iter()
+            .filter(|c| c.verdict.is_against())
+            .collect();
         against.sort_by_key(|claim| claim.verdict);
         for claim in against {
-            say!("figure {}: {}: {}", claim.figure, claim.verdict_in_words(), claim.says);
+            say!(
+                "figure {}: {}: {}",
+                claim.figure,
+                claim.verdict_in_words(),
+                claim.says
+            );
         }
         say!(
             "{} figures, {} numbers, {} statements: {}",

@@ -6,7 +6,10 @@ const REPLACEMENT: char = '\u{fffd}';
 /// Whether a character can stand in a picture, a page and a table, and shows what it is.
 pub(crate) fn is_shown(c: char) -> bool {
     let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{200e}' | '\u{200f}' | '\u{61c}');
-    let ends = matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}');
+    let ends = matches!(
+        c,
+        '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fffe}' | '\u{ffff}'
+    );
     !c.is_control() && !turns && !ends
 }
 

@@ -2,10 +2,12 @@
 
 pub mod accuracy;
 pub mod amplitudes;
+mod bases;
 pub mod critical;
 pub mod derived;
 pub mod identity;
 mod journal;
+use bases::Bases;
 pub use journal::journal_path;
 pub use progress::{Progress, Silent};
 pub mod minimise;
@@ -45,6 +47,8 @@ pub struct Setup {
     pub resolution: usize,
     /// Differentiation matrices, shared by all problems of the study.
     pub matrices: Arc<Matrices>,
+    /// Base states that were solved, shared by all setups made from this one.
+    bases: Arc<Bases>,
 }
 
 /// A coordinate of a study: the wavenumber or a parameter.
@@ -102,6 +106,7 @@ impl Setup {
             parameters,
             resolution,
             matrices: Arc::default(),
+            bases: Arc::default(),
         }
     }
 
@@ -164,7 +169,16 @@ impl Setup {
     /// # Errors
     /// See [`base::solve`].
     pub fn base(&self, near: Option<&BaseState>) -> Result<Arc<BaseState>> {
-        base::solve(&self.model, &self.parameters, &self.matrices, near).map(Arc::new)
+        if near.is_some() {
+            return base::solve(&self.model, &self.parameters, &self.matrices, near).map(Arc::new);
+        }
+        if let Some(base) = self.bases.at(&self.parameters) {
+            return Ok(base);
+        }
+        let base = base::solve(&self.model, &self.parameters, &self.matrices, None)?;
+        let base = Arc::new(base);
+        self.bases.add(&self.parameters, &base);
+        Ok(base)
     }
 
     /// The problem around a base state, collocated at M.

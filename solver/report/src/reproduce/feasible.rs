@@ -14,6 +14,8 @@ use std::collections::BTreeSet;
 /// The first thing that a model does not have, with its place in the study.
 pub(super) fn check(shop: &Workshop) -> Result<()> {
     let mut read = Read::default();
+    let top = Spot::default().key("model");
+    shop.model().map_err(|error| refused(shop, &top, error))?;
     for (position, figure) in shop.study.figure.iter().enumerate() {
         for (number, task) in figure.task.iter().enumerate() {
             let spot = Spot::task((position, figure), (number, task));
@@ -154,7 +156,11 @@ impl Needs<'_> {
             "the model `{}` has no bounded coordinate, and {what} goes along one: it accepts a model that has",
             structure.name
         );
-        Err(refused(self.shop, &self.case.key("model"), Error::input(message)))
+        Err(refused(
+            self.shop,
+            &self.case.key("model"),
+            Error::input(message),
+        ))
     }
 
     /// Both ends of an axis, k or a parameter.
@@ -199,7 +205,11 @@ impl Needs<'_> {
     }
 
     fn expression(&mut self, spot: &Spot, text: &str) -> Result<()> {
-        if self.read.expressions.insert((self.setup.hash(), text.to_owned())) {
+        if self
+            .read
+            .expressions
+            .insert((self.setup.hash(), text.to_owned()))
+        {
             expression(self.setup.model.as_ref(), text)
                 .map_err(|error| refused(self.shop, spot, error))?;
         }
@@ -207,7 +217,11 @@ impl Needs<'_> {
     }
 
     fn column(&mut self, spot: &Spot, text: &str) -> Result<()> {
-        if self.read.columns.insert((self.setup.hash(), text.to_owned())) {
+        if self
+            .read
+            .columns
+            .insert((self.setup.hash(), text.to_owned()))
+        {
             column(self.setup.model.as_ref(), text)
                 .map_err(|error| refused(self.shop, spot, error))?;
         }
@@ -238,7 +252,11 @@ impl Needs<'_> {
             structure.name,
             names.join(", ")
         );
-        Err(refused(self.shop, &self.spot.key(key), Error::input(message)))
+        Err(refused(
+            self.shop,
+            &self.spot.key(key),
+            Error::input(message),
+        ))
     }
 }
 
@@ -253,4 +271,3 @@ fn derived(columns: &[Together]) -> impl Iterator<Item = (usize, &String)> {
         texts.map(move |text| (index, text))
     })
 }
-

@@ -10,7 +10,8 @@ use std::path::{Path, PathBuf};
 const MARK: &str = ".landau-report";
 /// How files begin that are on their way into a folder, the mark among them.
 const ON_THE_WAY: &str = ".landau-";
-const MARK_TEXT: &str = "landau reproduce writes its report here, and replaces files of an earlier one.\n";
+const MARK_TEXT: &str =
+    "landau reproduce writes its report here, and replaces files of an earlier one.\n";
 
 /// A folder that belongs to a report: nothing of others is in it.
 #[derive(Clone, Debug)]
@@ -70,7 +71,9 @@ impl Shelf {
     /// A name that leads out of the folder, a link.
     pub fn path(&self, name: &str) -> Result<PathBuf> {
         if !name.split('/').all(is_plain) {
-            return Err(Error::input(format!("{name:?} is no name of a report's file")));
+            return Err(Error::input(format!(
+                "{name:?} is no name of a report's file"
+            )));
         }
         let path = self.folder.join(name);
         // A link leads to a file of somebody else.
@@ -120,7 +123,9 @@ impl Study {
     /// The folder of the study file: what it names stands relative to it.
     pub fn home(&self) -> &Path {
         let parent = self.read_from.path.parent();
-        parent.filter(|path| !path.as_os_str().is_empty()).unwrap_or(Path::new("."))
+        parent
+            .filter(|path| !path.as_os_str().is_empty())
+            .unwrap_or(Path::new("."))
     }
 }
 
@@ -135,7 +140,17 @@ mod tests {
         for name in ["figure6-1.svg", "errata/shukla2014.toml", "κ (2).csv"] {
             assert!(name.split('/').all(is_plain), "{name}");
         }
-        for name in ["", "..", "../x", "/etc/passwd", "a//b", "a\0", "a\nb", ".x", "a\\b"] {
+        for name in [
+            "",
+            "..",
+            "../x",
+            "/etc/passwd",
+            "a//b",
+            "a\0",
+            "a\nb",
+            ".x",
+            "a\\b",
+        ] {
             assert!(!name.split('/').all(is_plain), "{name:?}");
         }
     }

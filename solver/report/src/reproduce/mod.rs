@@ -19,8 +19,8 @@ mod table;
 mod task;
 mod workshop;
 
-pub use errata::{Errata, Judgement, Remark, all_explained};
 pub use claim::{Claim, Verdict};
+pub use errata::{Errata, Judgement, Remark, all_explained};
 pub use outcome::{Beside, Number, Outcome, Picture};
 pub use page::Formulas;
 pub use study::Study;

@@ -239,17 +239,31 @@ mod tests {
         };
         let cases = [case("one", "2.2"), case("two", "99.0")];
         let mut outcome = Outcome::default();
-        let name = |case: &Case, name: &str| Number::new("1", case, name, format!("{}: {name}", case.label));
-        outcome.numbers.push(name(&cases[0], "k").answered(2.2, None));
+        let name = |case: &Case, name: &str| {
+            Number::new("1", case, name, format!("{}: {name}", case.label))
+        };
+        outcome
+            .numbers
+            .push(name(&cases[0], "k").answered(2.2, None));
         // Another number of the second case, whose name ends as the printed one.
-        outcome.numbers.push(name(&cases[1], "second k").answered(2.2, None));
+        outcome
+            .numbers
+            .push(name(&cases[1], "second k").answered(2.2, None));
         outcome.demand_partners("1", &cases);
         assert_eq!(outcome.numbers.len(), 3);
-        assert_eq!((outcome.numbers[2].printed, outcome.numbers[2].ours), (Some(99.0), None));
-        assert_eq!(outcome.failures, ["two: k: nothing in this task is called so"]);
+        assert_eq!(
+            (outcome.numbers[2].printed, outcome.numbers[2].ours),
+            (Some(99.0), None)
+        );
+        assert_eq!(
+            outcome.failures,
+            ["two: k: nothing in this task is called so"]
+        );
         // One that has no value is no answer.
         let mut outcome = Outcome::default();
-        outcome.numbers.push(name(&cases[0], "k").failed("no equilibrium"));
+        outcome
+            .numbers
+            .push(name(&cases[0], "k").failed("no equilibrium"));
         outcome.demand_partners("1", &cases[..1]);
         assert_eq!(outcome.failures, ["one: k: no equilibrium"]);
     }

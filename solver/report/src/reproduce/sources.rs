@@ -100,7 +100,13 @@ mod tests {
         let names: Vec<&str> = files.0.iter().map(|(name, _)| name.as_str()).collect();
         assert_eq!(
             names,
-            ["a.toml", "errata/a.toml", "bed.model", "bed-2.model", "file"]
+            [
+                "a.toml",
+                "errata/a.toml",
+                "bed.model",
+                "bed-2.model",
+                "file"
+            ]
         );
     }
 }

@@ -72,7 +72,12 @@ impl Table {
     /// Comma-separated, empty where there is no value; words in quotation marks where they need them.
     pub fn csv(&self) -> String {
         let words = self.words.iter().map(|(name, _)| name);
-        let header: Vec<String> = self.header.iter().chain(words).map(|name| cell(name)).collect();
+        let header: Vec<String> = self
+            .header
+            .iter()
+            .chain(words)
+            .map(|name| cell(name))
+            .collect();
         let mut text = header.join(",") + "\n";
         for (index, row) in self.rows.iter().enumerate() {
             let number = |v: &f64| {

@@ -34,7 +34,7 @@ pub struct Workshop<'a> {
     /// Where finished tasks are kept: beside the report, not in it.
     pub(super) kept: Shelf,
     /// Models by the names that the study gives them, each read once.
-    models: Mutex<BTreeMap<String, Arc<dyn Model>>>,
+    setups: Mutex<BTreeMap<String, Setup>>,
 }
 
 impl<'a> Workshop<'a> {
@@ -57,7 +57,7 @@ impl<'a> Workshop<'a> {
             library,
             shelf,
             kept: Shelf::new(&out.with_file_name(beside))?,
-            models: Mutex::default(),
+            setups: Mutex::default(),
         };
         feasible::check(&shop)?;
         Ok(shop)
@@ -85,23 +85,30 @@ impl<'a> Workshop<'a> {
     pub(super) fn setup(&self, case: &Case) -> Result<Setup> {
         let name = case.model.as_ref().unwrap_or(&self.study.model);
         let resolution = case.resolution.unwrap_or(self.study.resolution);
-        let mut setup = Setup::new(self.model_named(name)?, resolution);
+        let mut setup = self.defaults(name)?;
+        setup.resolution = resolution;
         setup.set(&case.set)?;
         Ok(setup)
     }
 
     /// A model as the study names it: a file beside the study where there is one, a built model otherwise.
     pub(super) fn model_named(&self, name: &str) -> Result<Arc<dyn Model>> {
-        let mut models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(model) = models.get(name) {
-            return Ok(model.clone());
+        Ok(self.defaults(name)?.model)
+    }
+
+    /// A model at the defaults of its parameters; setups made from it share the base states that were solved.
+    fn defaults(&self, name: &str) -> Result<Setup> {
+        let mut setups = self.setups.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(setup) = setups.get(name) {
+            return Ok(setup.clone());
         }
         let file = self.study.home().join(name);
         let model = match file.to_str() {
             Some(path) if file.is_file() => self.library.model(path)?,
             _ => self.library.model(name)?,
         };
-        models.insert(name.to_owned(), model.clone());
-        Ok(model)
+        let setup = Setup::new(model, self.study.resolution);
+        setups.insert(name.to_owned(), setup.clone());
+        Ok(setup)
     }
 }

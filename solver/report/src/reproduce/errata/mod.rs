@@ -8,6 +8,7 @@ mod verdict;
 
 pub use verdict::{RULE, Verdict};
 
+use super::study::{refined, words_can_be_shown};
 use landau_codegen::derive::Derivation;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::comparison;
@@ -16,7 +17,6 @@ use landau_codegen::formula::{Arrangement, Formula as Tree};
 use landau_codegen::model::End;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{TEXT_LIMIT, read_text};
-use super::study::{refined, words_can_be_shown};
 use serde::Deserialize;
 use std::path::Path;
 use verdict::{Change, File};

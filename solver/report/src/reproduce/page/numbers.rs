@@ -144,7 +144,9 @@ fn digits(value: f64, number: &Number) -> String {
 
 /// A number with so many significant digits.
 fn significant(value: f64, count: usize) -> String {
-    if value != 0.0 && !(1e-3..1e6).contains(&value.abs()) {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if !(1e-3..1e6).contains(&value.abs()) {
         format!("{value:.*e}", count - 1)
     } else {
         let whole = value.abs().max(1e-3).log10().floor() as i32;
@@ -168,6 +170,7 @@ pub(super) fn words(claim: &Claim, symbols: &Symbols) -> Markup {
     html! {
         @if claim.quoted { "“" (rich(&claim.says, symbols)) "”" } @else { (rich(&claim.says, symbols)) }
         @if let Some(section) = &claim.section { " (" (section) ")" }
+        @if !claim.says.ends_with(['.', '!', '?']) || claim.section.is_some() { "." }
     }
 }
 
@@ -213,7 +216,7 @@ mod tests {
             (64.230_004, Some("64.23"), "64.2300"),
             (1_461_686.84, None, "1.46169e6"),
             (0.053_931_349, Some("0.05393135"), "0.053931349"),
-            (0.0, None, "0.00000000"),
+            (0.0, None, "0"),
         ] {
             assert_eq!(digits(ours, &number(ours, printed)), shown);
         }

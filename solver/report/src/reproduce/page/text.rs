@@ -141,12 +141,25 @@ mod tests {
                 assert!(!page.contains(element), "{latex}: {page}");
             }
         }
-        assert!(inline(r"\frac{a^2}{b} \le \operatorname{Re} c").into_string().contains("<mfrac"));
+        assert!(
+            inline(r"\frac{a^2}{b} \le \operatorname{Re} c")
+                .into_string()
+                .contains("<mfrac")
+        );
     }
 
     #[test]
     fn formulas_of_any_depth_end() {
-        for piece in ["{", r"\frac", r"\sqrt{", r"\left(", "x^", r"\begin{matrix}", r"\hat", "^"] {
+        for piece in [
+            "{",
+            r"\frac",
+            r"\sqrt{",
+            r"\left(",
+            "x^",
+            r"\begin{matrix}",
+            r"\hat",
+            "^",
+        ] {
             for count in [50, 5000, 100_000] {
                 inline(&piece.repeat(count));
             }

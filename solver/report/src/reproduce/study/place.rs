@@ -127,9 +127,14 @@ pub(in crate::reproduce) fn refined(text: &str, error: &toml::de::Error) -> Stri
         let (table, list) = table_ends(text, span.start);
         within(table).or_else(|| within(list))
     });
+    // The reader names types of numbers as the program does.
+    let message = error
+        .message()
+        .replace("expected usize", "expected a whole number")
+        .replace("expected f64", "expected a number");
     match key.or_else(|| error.span()) {
-        Some(range) => pointed(text, range, error.message()),
-        None => bounded(error.message()),
+        Some(range) => pointed(text, range, &message),
+        None => bounded(&message),
     }
 }
 
@@ -161,7 +166,8 @@ fn named(text: &str, table: Range<usize>, message: &str) -> Option<Range<usize>>
 
 /// The value that a message quotes: invalid type: integer `3`, or string "abc".
 fn written(text: &str, table: Range<usize>, message: &str) -> Option<Range<usize>> {
-    let quoted = message.strip_prefix("invalid type: ")?;
+    let quoted = message.strip_prefix("invalid type: ");
+    let quoted = quoted.or_else(|| message.strip_prefix("invalid value: "))?;
     let value = match quoted.split_once('`') {
         Some((_, value)) => value.split('`').next()?.to_owned(),
         None => format!("\"{}\"", quoted.split('"').nth(1)?),
@@ -192,8 +198,7 @@ mod tests {
         let text = "a = 1\n[[b]]\ncount = 3\nover = { count = 0 }\n";
         let table = text.find("over").expect("there")..text.len();
         let place = place_of_key(text, table, "count").expect("a key");
-        let expected =
-            "line 4, column 10\n  |\n4 | over = { count = 0 }\n  |          ^^^^^\nno\n";
+        let expected = "line 4, column 10\n  |\n4 | over = { count = 0 }\n  |          ^^^^^\nno\n";
         assert_eq!(pointed(text, place, "no"), expected);
         let key = |key: &str| Step::Key(key.to_owned());
         let mistake = |steps: &[Step]| Mistake {

@@ -126,4 +126,3 @@ pub enum Trend {
     Rising,
     Falling,
 }
-

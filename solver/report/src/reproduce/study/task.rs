@@ -240,4 +240,3 @@ pub enum Task {
 fn two() -> f64 {
     2.0
 }
-

@@ -1,8 +1,8 @@
 //! Beyond cubic order of one mode: amplitudes by order, and a mode with its second harmonic.
 
 use super::super::outcome::{Beside, Number, Outcome};
-use super::super::table::Table;
 use super::super::study::{Axis, Case, named};
+use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::{called, each};
@@ -205,7 +205,9 @@ pub(super) fn second_harmonic(shop: &Workshop, cases: &[Case], over: &Axis) -> R
     let mut states = Table::new(&["case", "k", "|z1|", "|z2|", "stable", "next order"]);
     for (index, rows) in &found {
         let number = (*index + 1) as f64;
-        outcome.failures.extend(nothing_in(&cases[*index].label, rows));
+        outcome
+            .failures
+            .extend(nothing_in(&cases[*index].label, rows));
         for (k, found) in places.iter().zip(rows) {
             let Ok(Pair {
                 system,

@@ -193,13 +193,26 @@ fn demands(statement: &Statement, others: Others, (value, error): Value) -> Vec<
     let mut demands = Vec::new();
     let bound = |bound: f64| (short(bound), bound);
     if let Some(above) = statement.above {
-        demands.push(Demand::positive(value - above, error, bound(above), short(value)));
+        demands.push(Demand::positive(
+            value - above,
+            error,
+            bound(above),
+            short(value),
+        ));
     }
     if let Some(below) = statement.below {
-        demands.push(Demand::positive(below - value, error, bound(below), short(value)));
+        demands.push(Demand::positive(
+            below - value,
+            error,
+            bound(below),
+            short(value),
+        ));
     }
     // Shares of the first case's value, which is known to its own error.
-    let shares = [(statement.as_first_within, 1.0), (statement.apart_from_first, -1.0)];
+    let shares = [
+        (statement.as_first_within, 1.0),
+        (statement.apart_from_first, -1.0),
+    ];
     for (share, sign) in shares {
         let Some(share) = share.filter(|_| !others.is_first) else {
             continue;
@@ -265,9 +278,15 @@ fn decided(
             Some(false) => "missed",
             None => "undecided",
         };
-        evidence.push(format!("{label} = {:.6} ± {:.1e}: {word}", value.0, value.1));
+        evidence.push(format!(
+            "{label} = {:.6} ± {:.1e}: {word}",
+            value.0, value.1
+        ));
         for demand in demands.iter().filter(|demand| demand.met == Some(false)) {
-            if worst.as_ref().is_none_or(|(most, _)| demand.missed_by > *most) {
+            if worst
+                .as_ref()
+                .is_none_or(|(most, _)| demand.missed_by > *most)
+            {
                 worst = Some((
                     demand.missed_by,
                     format!("at {}: {}", demand.bound, demand.measured),
@@ -385,7 +404,10 @@ mod tests {
         let first = (2.0, 0.0);
         assert_eq!(verdict(&same, &[first, (2.01, 1e-3)]).0, Some(true));
         let missed = Some("at 1 %: 1.5 %".to_owned());
-        assert_eq!(verdict(&same, &[first, (2.03, 1e-3)]), (Some(false), missed));
+        assert_eq!(
+            verdict(&same, &[first, (2.03, 1e-3)]),
+            (Some(false), missed)
+        );
         // The error of the first case counts too.
         assert_eq!(verdict(&same, &[(2.0, 0.1), (2.03, 0.0)]).0, None);
         // A case equal to the first is not apart from it.

@@ -236,7 +236,9 @@ pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<
         0 => String::new(),
         1 => "1 point without a converged c2 is left out: the column `status` says why".to_owned(),
         count => {
-            format!("{count} points without a converged c2 are left out: the column `status` says why")
+            format!(
+                "{count} points without a converged c2 are left out: the column `status` says why"
+            )
         }
     };
     picture(shop, &mut outcome, &caption, &drawn, table);

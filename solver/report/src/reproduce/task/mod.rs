@@ -40,7 +40,11 @@ fn described(shop: &Workshop, cases: &[Case]) -> Result<Vec<Value>> {
             .map(|(id, info)| {
                 let automatic = setup.parameters.automatic[id];
                 let value = setup.parameters.json(structure)[&info.name].clone();
-                let value = if automatic { Value::from("auto") } else { value };
+                let value = if automatic {
+                    Value::from("auto")
+                } else {
+                    value
+                };
                 (info.name.clone(), value)
             })
             .collect();

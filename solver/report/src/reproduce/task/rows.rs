@@ -13,7 +13,10 @@ pub(super) fn nothing_in(label: &str, rows: &[Row]) -> Option<String> {
     let first = rows.first().filter(|_| !answered)?;
     let count = rows.len();
     let label = called(label);
-    Some(format!("{label}: none of {count} points came out; the first: {}", first.status))
+    Some(format!(
+        "{label}: none of {count} points came out; the first: {}",
+        first.status
+    ))
 }
 
 /// Landau points of one case over an axis.

@@ -44,7 +44,11 @@ fn bounds(spot: &Spot, statement: &Statement, cases: &[Case]) -> Checked {
         ("as_first_within", statement.as_first_within),
         ("apart_from_first", statement.apart_from_first),
     ];
-    let given = || numbers.iter().filter_map(|(key, value)| Some((*key, (*value)?)));
+    let given = || {
+        numbers
+            .iter()
+            .filter_map(|(key, value)| Some((*key, (*value)?)))
+    };
     spot.demand(given().next().is_some() || statement.trend.is_some(), || {
         "nothing decides the statement: it accepts `above`, `below`, `as_first_within`, `apart_from_first` or `trend`"
             .to_owned()
@@ -55,7 +59,10 @@ fn bounds(spot: &Spot, statement: &Statement, cases: &[Case]) -> Checked {
     for (key, share) in &numbers[2..] {
         let so = share.is_none_or(|share| share > 0.0);
         spot.key(key).demand(so, || {
-            format!("{key} = {}: it accepts a share above zero", share.unwrap_or(0.0))
+            format!(
+                "{key} = {}: it accepts a share above zero",
+                share.unwrap_or(0.0)
+            )
         })?;
     }
     if let (Some(above), Some(below)) = (statement.above, statement.below) {
@@ -113,7 +120,10 @@ fn needs_k(statement: &Statement) -> Option<String> {
     match (&statement.at, &statement.over) {
         (Some(_), _) => None,
         (None, Some(over)) if over.name == "k" => None,
-        (None, Some(over)) => Some(format!("`{name}` is sought along `{}` at a wavenumber", over.name)),
+        (None, Some(over)) => Some(format!(
+            "`{name}` is sought along `{}` at a wavenumber",
+            over.name
+        )),
         (None, None) => Some(format!("`{name}` is a number at a wavenumber")),
     }
 }

@@ -33,6 +33,11 @@ pub(super) fn question(spot: &Spot, asked: &Asked) -> Checked {
         "name = \"\": it accepts what the number is called".to_owned()
     })?;
     spot.range("between", asked.between)?;
+    let both = along_k && asked.minimize.is_some();
+    spot.key("minimize").demand(!both, || {
+        "minimize is a range of k, and vary = `k`: with `minimize` it accepts a parameter"
+            .to_owned()
+    })?;
     if along_k {
         spot.wavenumber("between", asked.between[0])?;
     }
@@ -48,9 +53,6 @@ pub(super) fn question(spot: &Spot, asked: &Asked) -> Checked {
     spot.range("minimize", range)?;
     spot.wavenumber("minimize", range[0])?;
     let spot = spot.key("minimize");
-    spot.demand(!along_k, || {
-        "minimize is a range of k, and vary = `k`: with `minimize` it accepts a parameter".to_owned()
-    })?;
     spot.demand(asked.k.is_none(), || {
         "minimize stands beside `k`: a question accepts one of the two".to_owned()
     })?;

@@ -104,7 +104,8 @@ impl Spot {
 
     /// Refuses a number of collocation points out of range, as the command line does.
     fn resolution(&self, key: &str, resolution: usize) -> Checked {
-        check_resolution(resolution).map_err(|error| self.key(key).mistake(format!("{key}: {error}")))
+        check_resolution(resolution)
+            .map_err(|error| self.key(key).mistake(format!("{key}: {error}")))
     }
 
     /// Refuses two numbers that are no range from the lower to the upper.
@@ -195,7 +196,10 @@ fn axis(spot: &Spot, key: &str, axis: &Axis) -> Checked {
     }
     let geometric = axis.spacing == Spacing::Geometric;
     spot.key("from").demand(!geometric || axis.from > 0.0, || {
-        format!("`{}` by equal factors accepts numbers above zero", axis.name)
+        format!(
+            "`{}` by equal factors accepts numbers above zero",
+            axis.name
+        )
     })
 }
 

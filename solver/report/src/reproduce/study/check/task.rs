@@ -75,13 +75,20 @@ pub(super) fn check(spot: &Spot, task: &Task) -> Checked {
             marks(spot, mark, &over.name, cases)?;
             let so = !logarithmic[0] || over.from > 0.0;
             spot.key("logarithmic").demand(so, || {
-                format!("a logarithmic axis accepts numbers above zero: `{}` begins at {}", over.name, over.from)
+                format!(
+                    "a logarithmic axis accepts numbers above zero: `{}` begins at {}",
+                    over.name, over.from
+                )
             })?;
             for (index, reference) in reference.iter().enumerate() {
                 let spot = spot.entry("reference", index, format!("reference {}", index + 1));
                 let so = (1..=columns.len()).contains(&reference.panel);
                 spot.key("panel").demand(so, || {
-                    format!("panel = {}: it accepts 1 to {}", reference.panel, columns.len())
+                    format!(
+                        "panel = {}: it accepts 1 to {}",
+                        reference.panel,
+                        columns.len()
+                    )
                 })?;
             }
             points(spot, cases, &[over.count])
@@ -100,7 +107,9 @@ pub(super) fn check(spot: &Spot, task: &Task) -> Checked {
             along_k(spot, over)?;
             let so = !highest.is_multiple_of(2) && (5..=HIGHEST).contains(highest);
             spot.key("highest").demand(so, || {
-                format!("highest = {highest} is no order: it accepts odd numbers from 5 to {HIGHEST}")
+                format!(
+                    "highest = {highest} is no order: it accepts odd numbers from 5 to {HIGHEST}"
+                )
             })?;
             for (index, [k, amplitude]) in reference.iter().enumerate() {
                 let spot = spot.entry("reference", index, format!("reference {}", index + 1));
@@ -115,9 +124,7 @@ pub(super) fn check(spot: &Spot, task: &Task) -> Checked {
             along_k(spot, over)?;
             points(spot, cases, &[over.count])
         }
-        Task::Critical {
-            asked, against, ..
-        } => critical(spot, cases, asked, against.as_ref()),
+        Task::Critical { asked, against, .. } => critical(spot, cases, asked, against.as_ref()),
         Task::Claims { claim, .. } => {
             spot.not_empty("claim", claim, "statements")?;
             for (index, statement) in claim.iter().enumerate() {
@@ -136,13 +143,13 @@ pub(super) fn check(spot: &Spot, task: &Task) -> Checked {
             power_law(spot, critical, *distances, *count)?;
             points(spot, cases, &[*count])
         }
-        Task::Pattern {
-            wavelengths, ..
-        } => {
+        Task::Pattern { wavelengths, .. } => {
             each_has_k(spot, cases, "a pattern is that of a Landau point")?;
             let so = *wavelengths > 0.0 && *wavelengths <= WAVELENGTHS;
             spot.key("wavelengths").demand(so, || {
-                format!("wavelengths = {wavelengths}: it accepts a number above 0, up to {WAVELENGTHS}")
+                format!(
+                    "wavelengths = {wavelengths}: it accepts a number above 0, up to {WAVELENGTHS}"
+                )
             })
         }
         Task::Circulation { over, k, side, .. } => {
@@ -165,7 +172,10 @@ fn each_along(spot: &Spot, cases: &[Case], over: &Axis) -> Checked {
     if over.name == "k" {
         return Ok(());
     }
-    let why = format!("the axis is `{}`, and a row is a Landau point at a wavenumber", over.name);
+    let why = format!(
+        "the axis is `{}`, and a row is a Landau point at a wavenumber",
+        over.name
+    );
     each_has_k(spot, cases, &why)
 }
 
@@ -190,15 +200,18 @@ fn critical(spot: &Spot, cases: &[Case], list: &[Asked], against: Option<&Axis>)
         let spot = spot.entry("asked", index, format!("question {}", index + 1));
         let earlier = list[..index].iter().any(|other| other.name == one.name);
         spot.key("name").demand(!earlier, || {
-            format!("two questions are called `{}`: numbers are found by their names", one.name)
+            format!(
+                "two questions are called `{}`: numbers are found by their names",
+                one.name
+            )
         })?;
         match against {
             // The axis says at which wavenumber.
             Some(axis) if axis.name == "k" => {
-                question(&spot, one)?;
                 spot.key("vary").demand(one.vary != "k", || {
                     "vary = `k` against an axis of `k`: it accepts a parameter".to_owned()
                 })?;
+                question(&spot, one)?;
                 spot.key("k").demand(one.k.is_none() && one.minimize.is_none(), || {
                     "`k` or `minimize` stands beside an axis of `k`: a question accepts one wavenumber"
                         .to_owned()
@@ -208,7 +221,10 @@ fn critical(spot: &Spot, cases: &[Case], list: &[Asked], against: Option<&Axis>)
         }
         let same = against.is_some_and(|axis| axis.name == one.vary);
         spot.key("vary").demand(!same, || {
-            format!("vary = `{}` is the axis too: it accepts another name", one.vary)
+            format!(
+                "vary = `{}` is the axis too: it accepts another name",
+                one.vary
+            )
         })?;
     }
     if let Some(over) = against {
@@ -232,9 +248,11 @@ fn power_law(spot: &Spot, critical: &Asked, distances: [f64; 2], count: usize) -
         )
     })?;
     // The law is that of one axis; an extremum over k moves along another.
-    spot.key("critical").key("minimize").demand(critical.minimize.is_none(), || {
-        "minimize: a power law is taken at one `k`".to_owned()
-    })
+    spot.key("critical")
+        .key("minimize")
+        .demand(critical.minimize.is_none(), || {
+            "minimize: a power law is taken at one `k`".to_owned()
+        })
 }
 
 fn of_resolutions(spot: &Spot, resolutions: &[usize]) -> Checked {
