@@ -33,8 +33,8 @@ impl Shelf {
             return wrong("this is no folder: a report accepts a new or empty one");
         }
         if let Ok(entries) = fs::read_dir(folder) {
-            let mut names = entries.filter_map(|entry| Some(entry.ok()?.file_name()));
-            let foreign = names.any(|name| !name.to_string_lossy().starts_with(ON_THE_WAY));
+            let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+            let foreign = paths.any(|path| !is_on_the_way(&path));
             if foreign && !folder.join(MARK).is_file() {
                 return wrong(
                     "this folder holds other files and no report: a report accepts a new or empty folder, or that of an \
@@ -47,13 +47,44 @@ impl Shelf {
         })
     }
 
+    /// The folder beside a report in which its finished tasks are kept: new, empty, beside a report that is marked, or
+    /// with kept tasks alone.
+    ///
+    /// # Errors
+    /// A folder with anything else in it.
+    pub fn beside(&self, is_kept: impl Fn(&Path) -> bool) -> Result<Self> {
+        let mut name = self.folder.file_name().unwrap_or_default().to_owned();
+        name.push(".kept");
+        let folder = self.folder.with_file_name(name);
+        let entries = fs::read_dir(&folder).into_iter().flatten();
+        let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        let foreign = |path: PathBuf| !is_on_the_way(&path) && !is_kept(&path);
+        let is_link = fs::symlink_metadata(&folder).is_ok() && !folder.is_dir();
+        if is_link || (!self.folder.join(MARK).is_file() && paths.any(foreign)) {
+            return Err(Error::input(format!(
+                "{}: finished tasks are kept here, and it holds other files: a report accepts another --out, or this \
+                 folder without them",
+                folder.display()
+            )));
+        }
+        Ok(Shelf { folder })
+    }
+
+    /// Makes the folder.
+    ///
+    /// # Errors
+    /// Permissions, a full disk.
+    pub fn make(&self) -> Result<()> {
+        fs::create_dir_all(&self.folder)
+            .map_err(|e| Error::input(format!("{} cannot be made: {e}", self.folder.display())))
+    }
+
     /// Makes the folder, and marks it.
     ///
     /// # Errors
     /// Permissions, a full disk.
     pub fn open(&self) -> Result<()> {
-        fs::create_dir_all(&self.folder)
-            .map_err(|e| Error::input(format!("{} cannot be made: {e}", self.folder.display())))?;
+        self.make()?;
         if self.folder.join(MARK).is_file() {
             return Ok(());
         }
@@ -98,6 +129,12 @@ impl Shelf {
         }
         write_whole(&path, bytes)
     }
+}
+
+/// Whether a file is on its way into a folder.
+fn is_on_the_way(path: &Path) -> bool {
+    let name = path.file_name().unwrap_or_default();
+    name.to_string_lossy().starts_with(ON_THE_WAY)
 }
 
 /// Whether a name is one of a file: no way to another folder, nothing that cannot be seen.

@@ -7,6 +7,8 @@ use super::workshop::Workshop;
 use landau_solver::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::fs;
+use std::io::Read;
+use std::path::Path;
 
 /// What stands around the content of a kept task.
 const SEAL: &str = "{\"seal\":\"";
@@ -83,6 +85,14 @@ impl Workshop<'_> {
         parts.extend(self.provenance.commit.clone());
         Ok(parts.join(" "))
     }
+}
+
+/// Whether a file is a kept task, whole or not.
+pub(super) fn is_kept(path: &Path) -> bool {
+    let is_json = path.extension().is_some_and(|e| e == "json");
+    let mut start = [0; SEAL.len()];
+    let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
+    is_json && read.is_ok() && start == *SEAL.as_bytes()
 }
 
 /// Content with its seal.

@@ -78,7 +78,7 @@ impl Workshop<'_> {
         mut take: impl FnMut(&Unit, Outcome),
     ) -> Result<()> {
         self.shelf.open()?;
-        self.kept.open()?;
+        self.kept.make()?;
         progress.begin(tasks.len());
         for unit in tasks {
             let started = Instant::now();

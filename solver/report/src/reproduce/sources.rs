@@ -90,9 +90,9 @@ mod tests {
         for (folder, path, text) in [
             ("", "studies/a.toml", "study"),
             ("errata/", "../errata/a.toml", "errata"),
-            ("", "one/bed.model", "one"),
-            ("", "two/bed.model", "two"),
-            ("", "three/bed.model", "one"),
+            ("", "one/flow.model", "one"),
+            ("", "two/flow.model", "two"),
+            ("", "three/flow.model", "one"),
             ("", "/x/..", "none"),
         ] {
             files.add(folder, Path::new(path), text.to_owned());
@@ -103,8 +103,8 @@ mod tests {
             [
                 "a.toml",
                 "errata/a.toml",
-                "bed.model",
-                "bed-2.model",
+                "flow.model",
+                "flow-2.model",
                 "file"
             ]
         );

@@ -2,6 +2,7 @@
 
 use super::feasible;
 use super::files::Shelf;
+use super::keep::is_kept;
 use super::study::{Case, Study};
 use super::symbols;
 use crate::library::Library;
@@ -48,15 +49,13 @@ impl<'a> Workshop<'a> {
         out: &Path,
         provenance: Provenance,
     ) -> Result<Self> {
-        let mut beside = out.file_name().unwrap_or_default().to_owned();
-        beside.push(".kept");
         let shelf = Shelf::new(out)?;
         let shop = Workshop {
             study,
             provenance,
             library,
+            kept: shelf.beside(is_kept)?,
             shelf,
-            kept: Shelf::new(&out.with_file_name(beside))?,
             setups: Mutex::default(),
         };
         feasible::check(&shop)?;

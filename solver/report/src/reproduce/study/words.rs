@@ -6,7 +6,7 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 /// Keys whose texts are prose: of any length, over several lines.
-const PROSE: [&str; 8] = [
+const PROSE: [&str; 10] = [
     "text",
     "introduction",
     "note",
@@ -15,6 +15,8 @@ const PROSE: [&str; 8] = [
     "latex",
     "right",
     "why",
+    "printed",
+    "derived",
 ];
 /// Those of them that are LaTeX as a whole.
 const FORMULAS: [&str; 2] = ["latex", "right"];
