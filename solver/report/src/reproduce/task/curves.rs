@@ -96,8 +96,6 @@ pub(super) struct Wanted<'a> {
     pub over: &'a Axis,
     pub columns: &'a [Together],
     pub marks: &'a [Asked],
-    /// Whether one mode is followed along the axis.
-    pub follow: bool,
     pub logarithmic: [bool; 2],
     pub reference: &'a [Reference],
 }

@@ -103,12 +103,11 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             over,
             columns,
             mark,
-            follow,
             logarithmic,
             reference,
+            ..
         } => {
             let wanted = curves::Wanted {
-                follow: *follow,
                 figure,
                 over,
                 columns,
