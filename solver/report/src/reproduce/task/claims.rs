@@ -7,12 +7,11 @@ use super::super::workshop::Workshop;
 use super::each;
 use super::planes::crest;
 use super::points::critical_point;
-use super::rows::rows;
+use super::rows::{Coefficients, rows};
 use crate::library::column as derived_column;
 use landau_solver::base::BaseState;
 use landau_solver::error::{Error, Result};
 use landau_solver::study::Setup;
-use landau_solver::study::point::PointReport;
 use landau_solver::study::row::{Column, column};
 use landau_solver::weakly::Selection;
 use std::sync::Arc;
@@ -61,7 +60,7 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
     if statement.quantity == Quantity::Column {
         return column_value(&setup, k, statement);
     }
-    let point = PointReport::compute(&setup, k, Selection::Leading, 3)?;
+    let point = Coefficients::at(&setup, k)?;
     let amplitude_error = |a: f64| {
         // A² = −a0/a2
         let relative = point.error.c0 / point.c0.re.abs() + point.error.c2 / point.c2.re.abs();
@@ -71,7 +70,7 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
         Quantity::A2 => Ok((point.c2.re, point.error.c2)),
         Quantity::Amplitude => {
             let a = point
-                .amplitude
+                .amplitude()
                 .ok_or_else(|| Error::computation("there is no equilibrium at cubic order"))?;
             Ok((a, amplitude_error(a)))
         }
@@ -279,7 +278,7 @@ fn decided(
             None => "undecided",
         };
         evidence.push(format!(
-            "{label} = {:.6} ± {:.1e}: {word}",
+            "{label} is {:.6} ± {:.1e}: {word}",
             value.0, value.1
         ));
         for demand in demands.iter().filter(|demand| demand.met == Some(false)) {

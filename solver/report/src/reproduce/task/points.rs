@@ -5,15 +5,13 @@ use super::super::study::{Asked, Axis, Case, Of, named};
 use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
-use super::rows::rows;
+use super::rows::{Coefficients, rows};
 use super::{Named, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
 use landau_solver::study::critical::{self, Critical, Quantity, Question};
 use landau_solver::study::minimise;
-use landau_solver::study::point::PointReport;
 use landau_solver::study::{self, Setup, Silent};
-use landau_solver::weakly::Selection;
 
 /// The question of a study file for one case.
 pub(super) fn question(setup: &Setup, case: &Case, asked: &Asked) -> Result<Question> {
@@ -169,11 +167,11 @@ fn landau_point(setup: &Setup, k: f64, columns: &[String]) -> Result<Vec<Answer>
     let none = || "no equilibrium at cubic order".to_owned();
     // The row answers for what the point leaves open: where c2 is not converged, a0 may be.
     let row = rows(setup, None, "k", vec![k], columns)?.remove(0);
-    let mut answers: Vec<Answer> = match PointReport::compute(setup, k, Selection::Leading, 3) {
+    let mut answers: Vec<Answer> = match Coefficients::at(setup, k) {
         Ok(point) => vec![
             Ok((point.c0.re, Some(point.error.c0))),
             Ok((point.c2.re, Some(point.error.c2))),
-            point.amplitude.map(|a| (a, None)).ok_or_else(none),
+            point.amplitude().map(|a| (a, None)).ok_or_else(none),
         ],
         Err(Error::Input(message)) => return Err(Error::Input(message)),
         Err(error) => {
