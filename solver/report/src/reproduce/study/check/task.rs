@@ -2,7 +2,7 @@
 
 use super::critical::{asked, question};
 use super::{Checked, Spot, along_k, axis, claims, each_has_k, points};
-use crate::reproduce::study::{Asked, Axis, Case, Tail, Task};
+use crate::reproduce::study::{Asked, Axis, Case, Reference, Tail, Task, Together};
 use landau_solver::study::orders::HIGHEST;
 
 /// Wavelengths that a picture shows at most.
@@ -14,116 +14,11 @@ const DISTANCES: std::ops::RangeInclusive<usize> = 3..=1000;
 pub(super) fn check(spot: &Spot, task: &Task) -> Checked {
     let cases = task.cases();
     match task {
-        Task::Profiles {
-            fields, tail, mark, ..
-        } => {
-            spot.not_empty("fields", fields, "fields or expressions")?;
-            for (index, mark) in mark.iter().enumerate() {
-                let spot = spot.entry("mark", index, format!("mark {}", index + 1));
-                spot.finite("at", mark.at)?;
-            }
-            tail.as_ref().map_or(Ok(()), |tail| of_tail(spot, tail))
-        }
-        Task::Law {
-            expressions,
-            over,
-            at,
-            ..
-        } => {
-            spot.not_empty("expressions", expressions, "expressions")?;
-            axis(spot, "over", over)?;
-            for (name, value) in at {
-                spot.key("at").finite(name, *value)?;
-            }
-            points(spot, cases, &[over.count])
-        }
-        Task::Convergence {
-            over, resolutions, ..
-        } => {
-            axis(spot, "over", over)?;
-            each_along(spot, cases, over)?;
-            spot.key("resolutions").demand(resolutions.len() > 1, || {
-                "resolutions: it accepts two or more, for each is compared with the last".to_owned()
-            })?;
-            of_resolutions(spot, resolutions)?;
-            points(spot, cases, &[over.count, resolutions.len()])
-        }
-        Task::Spectrum {
-            over, resolutions, ..
-        } => {
-            along_k(spot, over)?;
-            of_resolutions(spot, resolutions)?;
-            points(spot, cases, &[over.count, resolutions.len()])
-        }
-        Task::Sweep {
-            over,
-            columns,
-            mark,
-            reference,
-            logarithmic,
-            ..
-        } => {
-            axis(spot, "over", over)?;
-            each_along(spot, cases, over)?;
-            spot.not_empty("columns", columns, "columns")?;
-            for (index, together) in columns.iter().enumerate() {
-                let spot = spot.entry("columns", index, format!("column {}", index + 1));
-                spot.demand(!together.drawn().is_empty(), || {
-                    "a panel without columns: brackets accept one or more".to_owned()
-                })?;
-            }
-            marks(spot, mark, &over.name, cases)?;
-            let so = !logarithmic[0] || over.from > 0.0;
-            spot.key("logarithmic").demand(so, || {
-                format!(
-                    "a logarithmic axis accepts numbers above zero: `{}` begins at {}",
-                    over.name, over.from
-                )
-            })?;
-            for (index, reference) in reference.iter().enumerate() {
-                let spot = spot.entry("reference", index, format!("reference {}", index + 1));
-                let so = (1..=columns.len()).contains(&reference.panel);
-                spot.key("panel").demand(so, || {
-                    format!(
-                        "panel = {}: it accepts 1 to {}",
-                        reference.panel,
-                        columns.len()
-                    )
-                })?;
-            }
-            points(spot, cases, &[over.count])
-        }
-        Task::Resonance { over, mark, .. } => {
-            along_k(spot, over)?;
-            marks(spot, mark, "k", cases)?;
-            points(spot, cases, &[over.count, 2])
-        }
-        Task::Orders {
-            over,
-            highest,
-            reference,
-            ..
-        } => {
-            along_k(spot, over)?;
-            let so = !highest.is_multiple_of(2) && (5..=HIGHEST).contains(highest);
-            spot.key("highest").demand(so, || {
-                format!(
-                    "highest = {highest} is no order: it accepts odd numbers from 5 to {HIGHEST}"
-                )
-            })?;
-            for (index, [k, amplitude]) in reference.iter().enumerate() {
-                let spot = spot.entry("reference", index, format!("reference {}", index + 1));
-                let so = k.is_finite() && amplitude.is_finite() && *k > 0.0;
-                spot.demand(so, || {
-                    format!("[{k}, {amplitude}]: it accepts a wavenumber and an amplitude")
-                })?;
-            }
-            points(spot, cases, &[over.count, *highest])
-        }
-        Task::SecondHarmonic { over, .. } => {
-            along_k(spot, over)?;
-            points(spot, cases, &[over.count])
-        }
+        Task::Profiles { .. } | Task::Law { .. } => of_the_state(spot, task),
+        Task::Convergence { .. } | Task::Spectrum { .. } => by_resolution(spot, task),
+        Task::Sweep { .. } | Task::Resonance { .. } => rows(spot, task),
+        Task::Orders { .. } | Task::SecondHarmonic { .. } => beyond_cubic(spot, task),
+        Task::Pattern { .. } | Task::Circulation { .. } => planes(spot, task),
         Task::Critical { asked, against, .. } => critical(spot, cases, asked, against.as_ref()),
         Task::Claims { claim, .. } => {
             spot.not_empty("claim", claim, "statements")?;
@@ -143,8 +38,161 @@ pub(super) fn check(spot: &Spot, task: &Task) -> Checked {
             power_law(spot, critical, *distances, *count)?;
             points(spot, cases, &[*count])
         }
-        Task::Pattern { wavelengths, .. } => {
-            each_has_k(spot, cases, "a pattern is that of a Landau point")?;
+    }
+}
+
+/// Profiles of base states, and laws over a field.
+fn of_the_state(spot: &Spot, task: &Task) -> Checked {
+    match task {
+        Task::Profiles {
+            fields, tail, mark, ..
+        } => {
+            spot.not_empty("fields", fields, "fields or expressions")?;
+            for (index, mark) in mark.iter().enumerate() {
+                let spot = spot.entry("mark", index, format!("mark {}", index + 1));
+                spot.finite("at", mark.at)?;
+            }
+            tail.as_ref().map_or(Ok(()), |tail| of_tail(spot, tail))
+        }
+        Task::Law {
+            case,
+            expressions,
+            over,
+            at,
+        } => {
+            spot.not_empty("expressions", expressions, "expressions")?;
+            axis(spot, "over", over)?;
+            for (name, value) in at {
+                spot.key("at").finite(name, *value)?;
+            }
+            points(spot, case, &[over.count])
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Tasks at several numbers of collocation points.
+fn by_resolution(spot: &Spot, task: &Task) -> Checked {
+    match task {
+        Task::Convergence {
+            case,
+            over,
+            resolutions,
+        } => {
+            axis(spot, "over", over)?;
+            each_along(spot, case, over)?;
+            spot.key("resolutions").demand(resolutions.len() > 1, || {
+                "resolutions: it accepts two or more, for each is compared with the last".to_owned()
+            })?;
+            of_resolutions(spot, resolutions)?;
+            points(spot, case, &[over.count, resolutions.len()])
+        }
+        Task::Spectrum {
+            case,
+            over,
+            resolutions,
+        } => {
+            along_k(spot, over)?;
+            of_resolutions(spot, resolutions)?;
+            points(spot, case, &[over.count, resolutions.len()])
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Rows of Landau points along an axis.
+fn rows(spot: &Spot, task: &Task) -> Checked {
+    match task {
+        Task::Sweep {
+            case,
+            over,
+            columns,
+            mark,
+            reference,
+            logarithmic,
+            ..
+        } => {
+            axis(spot, "over", over)?;
+            each_along(spot, case, over)?;
+            panels(spot, columns, reference)?;
+            marks(spot, mark, &over.name, case)?;
+            let so = !logarithmic[0] || over.from > 0.0;
+            spot.key("logarithmic").demand(so, || {
+                format!(
+                    "a logarithmic axis accepts numbers above zero: `{}` begins at {}",
+                    over.name, over.from
+                )
+            })?;
+            points(spot, case, &[over.count])
+        }
+        Task::Resonance { case, over, mark } => {
+            along_k(spot, over)?;
+            marks(spot, mark, "k", case)?;
+            points(spot, case, &[over.count, 2])
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Panels of a sweep, and the points of others that are drawn in them.
+fn panels(spot: &Spot, columns: &[Together], reference: &[Reference]) -> Checked {
+    spot.not_empty("columns", columns, "columns")?;
+    for (index, together) in columns.iter().enumerate() {
+        let spot = spot.entry("columns", index, format!("column {}", index + 1));
+        spot.demand(!together.drawn().is_empty(), || {
+            "a panel without columns: brackets accept one or more".to_owned()
+        })?;
+    }
+    for (index, reference) in reference.iter().enumerate() {
+        let spot = spot.entry("reference", index, format!("reference {}", index + 1));
+        let (panel, count) = (reference.panel, columns.len());
+        spot.key("panel").demand((1..=count).contains(&panel), || {
+            format!("panel = {panel}: it accepts 1 to {count}")
+        })?;
+    }
+    Ok(())
+}
+
+/// Expansions beyond cubic order of one mode.
+fn beyond_cubic(spot: &Spot, task: &Task) -> Checked {
+    match task {
+        Task::Orders {
+            case,
+            over,
+            highest,
+            reference,
+        } => {
+            along_k(spot, over)?;
+            let so = !highest.is_multiple_of(2) && (5..=HIGHEST).contains(highest);
+            spot.key("highest").demand(so, || {
+                format!(
+                    "highest = {highest} is no order: it accepts odd numbers from 5 to {HIGHEST}"
+                )
+            })?;
+            for (index, [k, amplitude]) in reference.iter().enumerate() {
+                let spot = spot.entry("reference", index, format!("reference {}", index + 1));
+                let so = k.is_finite() && amplitude.is_finite() && *k > 0.0;
+                spot.demand(so, || {
+                    format!("[{k}, {amplitude}]: it accepts a wavenumber and an amplitude")
+                })?;
+            }
+            points(spot, case, &[over.count, *highest])
+        }
+        Task::SecondHarmonic { case, over } => {
+            along_k(spot, over)?;
+            points(spot, case, &[over.count])
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Fields over the plane.
+fn planes(spot: &Spot, task: &Task) -> Checked {
+    match task {
+        Task::Pattern {
+            case, wavelengths, ..
+        } => {
+            each_has_k(spot, case, "a pattern is that of a Landau point")?;
             let so = *wavelengths > 0.0 && *wavelengths <= WAVELENGTHS;
             spot.key("wavelengths").demand(so, || {
                 format!(
@@ -152,7 +200,13 @@ pub(super) fn check(spot: &Spot, task: &Task) -> Checked {
                 )
             })
         }
-        Task::Circulation { over, k, side, .. } => {
+        Task::Circulation {
+            case,
+            over,
+            k,
+            side,
+            ..
+        } => {
             axis(spot, "over", over)?;
             spot.key("over").key("name").demand(over.name != "k", || {
                 "name = `k`: a circulation goes along a parameter, at one `k`".to_owned()
@@ -162,8 +216,9 @@ pub(super) fn check(spot: &Spot, task: &Task) -> Checked {
             spot.key("side").demand(so, || {
                 format!("side = {side}: it accepts a part of the wavelength, above 0 up to 1")
             })?;
-            points(spot, cases, &[over.count])
+            points(spot, case, &[over.count])
         }
+        _ => Ok(()),
     }
 }
 
