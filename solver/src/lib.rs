@@ -31,6 +31,7 @@ pub mod base;
 
 pub mod error;
 pub mod file;
+pub mod measured;
 pub mod numerics;
 pub mod parameters;
 pub mod pencil;

@@ -1,5 +1,6 @@
 //! Numbers in words and in JSON.
 
+use crate::measured::Measured;
 use crate::model::C64;
 use serde_json::{Value, json};
 
@@ -52,27 +53,22 @@ pub fn shown(value: C64) -> String {
 
 /// A number with the digits that its error leaves standing, ten at most.
 pub fn with_error(value: f64, error: f64) -> String {
-    let place = if error > 0.0 {
-        -error.log10().floor()
-    } else {
-        10.0
-    };
-    if value.abs() <= 0.1 * error {
-        return format!("0 ± {error:.0e}");
-    }
-    if value.abs() < 1e-4 || value.abs() >= 1e8 {
-        return format!("{value:.9e} ± {error:.0e}");
-    }
-    let decimals = place.clamp(0.0, 10.0) as usize;
-    format!("{value:.decimals$} ± {error:.0e}")
+    Measured::new(value, error).to_string()
 }
 
 /// The amplitude equation with its numbers.
-pub fn amplitude_equation(c0: C64, c2: C64) -> String {
-    let term = |x: f64| format!("{} {:.6e}", if x < 0.0 { "-" } else { "+" }, x.abs());
-    let mut text = format!("dA/dt = {:.6e} A {} A³", c0.re, term(c2.re));
-    if c0.im != 0.0 || c2.im != 0.0 {
-        text += &format!(",  dθ/dt = {:.6e} {} A²", c0.im, term(c2.im));
+pub fn amplitude_equation(c0: Measured<C64>, c2: Measured<C64>) -> String {
+    let digits = |x: f64, error: f64| Measured::new(x, error).scientific(6);
+    let first = |c: Measured<C64>, x: f64| digits(x, c.error);
+    let term = |c: Measured<C64>, x: f64| {
+        let sign = if x < 0.0 { '-' } else { '+' };
+        format!("{sign} {}", digits(x.abs(), c.error))
+    };
+    let (re0, re2) = (c0.value.re, c2.value.re);
+    let mut text = format!("dA/dt = {} A {} A³", first(c0, re0), term(c2, re2));
+    let (im0, im2) = (c0.value.im, c2.value.im);
+    if im0 != 0.0 || im2 != 0.0 {
+        text += &format!(",  dθ/dt = {} {} A²", first(c0, im0), term(c2, im2));
     }
     text
 }
@@ -98,7 +94,7 @@ mod tests {
     fn numbers_of_any_size() {
         let found = [0.16, 1708.0, -2.5e-9, 0.0, 1e-4].map(short);
         assert_eq!(found, ["0.16", "1708", "-2.5e-9", "0", "0.0001"]);
-        assert_eq!(with_error(1e-17, 5e-16), "0 ± 5e-16");
+        assert_eq!(with_error(1e-17, 5e-16), "0 ± 6e-16");
         assert_eq!(with_error(1707.76178, 2e-5), "1707.76178 ± 2e-5");
     }
 }

@@ -8,7 +8,9 @@ use landau_report::figure::{Drawing, Part, View, is_picture, pattern_lines, patt
 use landau_report::library::expression;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::Overwrite;
+use landau_solver::measured::Measured;
 use landau_solver::model::{Expression, FieldId};
+use landau_solver::study::accuracy::Converged;
 use landau_solver::study::{Setup, check_wavenumber};
 use landau_solver::weakly::{Pattern, PlaneField, Window, pattern as expand};
 use landau_solver::words;
@@ -23,27 +25,23 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
     let paths = options.out.iter().map(PathBuf::as_path);
     outputs::check(paths, Overwrite::forced(options.force))?;
     let state = setup.base(None)?;
-    let point = setup.point(&state, k, selection)?;
-    let amplitude = match (options.amplitude, point.amplitude()) {
-        (Some(given), _) if given.is_finite() => given,
-        (Some(given), _) => {
+    let converged = Converged::new(setup, &state, k, selection)?;
+    let amplitude = match options.amplitude {
+        Some(given) if given.is_finite() => Measured::new(given, 0.0),
+        Some(given) => {
             return Err(Error::input(format!(
                 "--amplitude {given}: it accepts a number"
             )));
         }
-        (None, Some(equilibrium)) => equilibrium,
-        (None, None) => {
-            return Err(Error::computation(
-                "there is no equilibrium amplitude at cubic order (a0 and a2 have one sign); \
-                     give one with --amplitude",
-            ));
-        }
+        None => converged.amplitude().map_err(|reason| {
+            Error::computation(format!("{reason}; give an amplitude with --amplitude"))
+        })?,
     };
     let expressions = shaded(setup, options)?;
-    let found = expand(&point, amplitude, window, &expressions)?;
+    let found = expand(&converged.point, amplitude.value, window, &expressions)?;
     let vector = options.arrows.as_deref().map(components).transpose()?;
     let parameters = state.parameters.json(state.structure());
-    let attributes = attributes(setup, &parameters, Some(k), Some(amplitude));
+    let attributes = attributes(setup, &parameters, Some(k), Some(amplitude.value));
     for name in vector.iter().flatten() {
         named(&found, name)?;
     }
@@ -60,12 +58,17 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
             .iter()
             .map(|p| p.display().to_string())
             .collect();
-        say!("{}", json!({"k": k, "amplitude": amplitude, "out": files}));
-    } else {
+        let error = words::number(amplitude.error);
         say!(
-            "{} at k = {k}, A = {amplitude:.8}",
-            setup.model.structure().title
+            "{}",
+            json!({"k": k, "amplitude": amplitude.value, "error": {"amplitude": error}, "out": files})
         );
+    } else {
+        let title = &setup.model.structure().title;
+        match options.amplitude {
+            Some(given) => say!("{title} at k = {k}, A = {given}"),
+            None => say!("{title} at k = {k}, A = {amplitude}"),
+        }
         for path in &options.out {
             say!("  {}", path.display());
         }

@@ -7,6 +7,7 @@ use landau_report::library::column;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::Overwrite;
 use landau_solver::model::{C64, Model};
+use landau_solver::study::accuracy::Converged;
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{self, Quantity, Question};
 use landau_solver::study::minimise::minimise;
@@ -100,6 +101,12 @@ fn row(row: &Row) -> Value {
     })
 }
 
+/// An answer's JSON with its words, which Python shows.
+fn with_text(mut json: Value, text: &impl std::fmt::Display) -> String {
+    json["text"] = text.to_string().into();
+    json.to_string()
+}
+
 fn quantity(of: &str) -> Result<Quantity> {
     match of {
         "growth" => Ok(Quantity::Growth),
@@ -153,11 +160,8 @@ impl Core {
     ) -> PyResult<String> {
         let model = self.model.clone();
         watched(py, move |_| {
-            Ok(
-                SpectrumReport::compute(&setup(model, &set, resolution)?, k)?
-                    .json()
-                    .to_string(),
-            )
+            let found = SpectrumReport::compute(&setup(model, &set, resolution)?, k)?;
+            Ok(with_text(found.json(), &found))
         })
     }
 
@@ -173,9 +177,8 @@ impl Core {
         let model = self.model.clone();
         watched(py, move |_| {
             let setup = setup(model, &set, resolution)?;
-            Ok(PointReport::compute(&setup, k, selection(near), order)?
-                .json()
-                .to_string())
+            let found = PointReport::compute(&setup, k, selection(near), order)?;
+            Ok(with_text(found.json(), &found))
         })
     }
 
@@ -212,9 +215,8 @@ impl Core {
                 near: near.map(|(re, im)| C64::new(re, im)),
             });
             let choices: Vec<ModeChoice> = choices.collect();
-            Ok(AmplitudesReport::compute(&setup, &choices, order)?
-                .json()
-                .to_string())
+            let found = AmplitudesReport::compute(&setup, &choices, order)?;
+            Ok(with_text(found.json(), &found))
         })
     }
 
@@ -394,14 +396,16 @@ impl Core {
                 wavelengths,
             };
             let base = setup.base(None)?;
-            let point = setup.point(&base, k, selection(near))?;
-            let missing = || {
-                Error::computation(
-                    "there is no equilibrium amplitude at cubic order: give one with amplitude",
-                )
+            let converged = Converged::new(&setup, &base, k, selection(near))?;
+            let amplitude = match amplitude {
+                Some(given) => given,
+                None => {
+                    let missing =
+                        |reason| Error::computation(format!("{reason}; give an amplitude"));
+                    converged.amplitude().map_err(missing)?.value
+                }
             };
-            let amplitude = amplitude.or(point.amplitude()).ok_or_else(missing)?;
-            let found = pattern(&point, amplitude, window, &[])?;
+            let found = pattern(&converged.point, amplitude, window, &[])?;
             let fields = found.fields.iter().map(|field| {
                 let value = json!({
                     "base": field.base,

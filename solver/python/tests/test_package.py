@@ -126,7 +126,9 @@ def test_errors_travel():
 def test_pictures_and_tables():
     bed = Model("vibrated_bed")
     point = bed.point(k=0.16)
-    assert "supercritical" in repr(point) and "<table>" in point._repr_html_()
+    assert "supercritical" in repr(point) and "<pre>" in point._repr_html_()
+    for part in ("distance to resonance", "envelope: dc0/dk", "± "):
+        assert part in repr(point), repr(point)
     assert point._repr_latex_().startswith("$$ \\frac{dA}{dt}")
     assert "±" in repr(bed.amplitudes([0.16]))
     assert bed.modes(k=0.16)["X[1;1]"]["n"].shape == (201,)

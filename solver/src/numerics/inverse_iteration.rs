@@ -5,6 +5,8 @@ use crate::model::C64;
 use faer::Mat;
 
 const MOST_ITERATIONS: usize = 30;
+/// An entry of a vector that falls by more in one iteration is still on its way to a small value.
+const FALLING: f64 = 1e3;
 
 /// An eigenvalue of a pencil with its vectors, each of size one.
 #[derive(Clone, Debug)]
@@ -40,7 +42,7 @@ pub fn inverse_iteration<T: Scalar>(
     (right, left): (Vec<T>, Vec<T>),
 ) -> Option<Eigen<T>> {
     let factorised = Factorised::new(shifted);
-    let (mut x, mut y);
+    let (mut x, mut y): (Vec<T>, Vec<T>) = (Vec::new(), Vec::new());
     let mut mass_x = mass.apply(&right);
     let mut mass_y = mass.apply_adjoint(&left);
     let (mut c, mut change) = (shift, f64::INFINITY);
@@ -58,8 +60,9 @@ pub fn inverse_iteration<T: Scalar>(
             return None;
         }
         let next = shift - dot(&new_y, &mass_x) / denominator;
-        x = scaled(&new_x, 1.0 / size_x);
-        y = scaled(&new_y, 1.0 / size_y);
+        let [new_x, new_y] = [scaled(&new_x, 1.0 / size_x), scaled(&new_y, 1.0 / size_y)];
+        let settled = !falls(&x, &new_x) && !falls(&y, &new_y);
+        (x, y) = (new_x, new_y);
         mass_x = scaled(&new_mass_x, 1.0 / size_x);
         mass_y = mass.apply_adjoint(&y);
         let step = (next - c).norm();
@@ -67,7 +70,7 @@ pub fn inverse_iteration<T: Scalar>(
         // The eigenvalue converges twice as fast as the vectors: one more turn after it settles.
         let floor = 1e-14 * c.norm().max((shift - c).norm()) + 1e-17 * scale;
         let small = step < 1e-10 * c.norm().max(1e-6 * scale) && step >= 0.5 * change;
-        if iteration > 0 && (step <= floor || small) {
+        if iteration > 0 && settled && (step <= floor || small) {
             return Some(Eigen {
                 c,
                 right: x,
@@ -77,6 +80,13 @@ pub fn inverse_iteration<T: Scalar>(
         change = step;
     }
     None
+}
+
+/// Whether an entry falls by orders of magnitude. A field in small units has small entries, which the start does not
+/// know of; the eigenvalue may settle long before they do.
+fn falls<T: Scalar>(before: &[T], after: &[T]) -> bool {
+    let mut pairs = before.iter().zip(after);
+    pairs.any(|(b, a)| b.size() > FALLING * a.size() && a.size() > 0.0)
 }
 
 #[cfg(test)]

@@ -66,6 +66,7 @@ pub struct WallRow<Column> {
 }
 
 /// A term with its coefficient at each point of its row.
+#[derive(Clone)]
 pub(super) struct CollocatedTerm<Row, Column> {
     pub row: Row,
     pub jet: Jet<Column>,
@@ -75,6 +76,7 @@ pub(super) struct CollocatedTerm<Row, Column> {
 }
 
 /// An operator from columns to rows with mass matrix and boundary conditions.
+#[derive(Clone)]
 pub struct LinearProblem<Row, Column> {
     /// Where it is collocated.
     pub space: Space,

@@ -9,6 +9,7 @@ mod block;
 mod claim;
 mod closure;
 mod conditions;
+mod disturbed;
 mod linear;
 mod mirror;
 mod presence;
@@ -27,6 +28,7 @@ use crate::model::{
     BalanceId, C64, ClosureKind, FieldId, Id, Jet, KernelId, Measure, Model, Structure, Table,
     TermInfo, evaluate,
 };
+use crate::numerics::Noise;
 use crate::numerics::dense::Scalar;
 use crate::space::{Layout, Place, Points, Space};
 use faer::Mat;
@@ -49,6 +51,8 @@ pub struct Problem {
     pub nonlinear: Table<BalanceId, Arc<Vec<Vec<f64>>>>,
     /// Quadratic form of the normalisation, by weighted field: Dᵀ diag(weights) D on its unknowns.
     pub gram: Vec<Mat<f64>>,
+    /// What its data are multiplied by, to show the effect of rounding.
+    pub(crate) noise: Option<Noise>,
 }
 
 /// Point states at the points of a family, computed once a family.
@@ -94,25 +98,10 @@ impl Problem {
     /// # Errors
     /// A coefficient that is not finite at some point.
     pub fn new(base: &Arc<BaseState>, resolution: Option<usize>) -> Result<Self> {
-        let (space, structure) = (base.space.plain(), base.structure());
+        let space = base.space.plain();
         let resolution = resolution.filter(|_| !space.is_point());
         let mut states = States::new(base, &space);
-        let layout = Layout::staggered(&structure.offsets, resolution)?;
-        let (column_turns, row_turns) = turns(structure);
-        let direct = LinearProblem {
-            walls: conditions::direct(base),
-            terms: terms(
-                &mut states,
-                &layout,
-                &structure.linear,
-                KernelId::Linear,
-                |row| structure.balances[row].clone(),
-            )?,
-            column_turns,
-            row_turns,
-            space: space.clone(),
-            layout,
-        };
+        let direct = linear(&mut states, resolution)?;
         let borders = closure::direct(base, &space, &direct.layout);
         let mut nonlinear = direct.layout.rows.map(|_| Arc::default());
         for (points, rows) in direct.layout.groups() {
@@ -128,6 +117,7 @@ impl Problem {
             adjoint: OnceLock::new(),
             borders,
             nonlinear,
+            noise: None,
         };
         let ids = problem.direct.layout.rows.ids();
         let size = |row| median(problem.direct.term_sizes(row, 0.0, |jet| jet.t == 0));
@@ -137,6 +127,16 @@ impl Problem {
         }
         problem.recognise_claims();
         Ok(problem)
+    }
+
+    /// L, M0 and the boundary conditions alone.
+    ///
+    /// # Errors
+    /// As [`Problem::new`].
+    pub fn linear(base: &BaseState, resolution: Option<usize>) -> Result<Direct> {
+        let space = base.space.plain();
+        let resolution = resolution.filter(|_| !space.is_point());
+        linear(&mut States::new(base, &space), resolution)
     }
 
     /// The adjoint problem, discretised on its own.
@@ -234,16 +234,49 @@ impl Problem {
     /// The rate at which the balance of slowest terms changes its field: Σ |coefficient| |k|^a (2/h)^d over the
     /// mass, a median over the points.
     pub fn rate(&self, k: f64) -> f64 {
+        // Terms of the fields whose time derivative the balance holds: others have units of their own.
+        let rate = self.slowest(k, |row, jet| self.direct.has_mass(row, jet.of));
+        if rate.is_finite() {
+            rate
+        } else {
+            self.slowest(k, |_, _| true)
+        }
+    }
+
+    /// The least rate over the balances, of the terms that are chosen; infinite where no balance has one.
+    fn slowest(&self, k: f64, chosen: impl Fn(BalanceId, &Jet) -> bool) -> f64 {
         let rates = self.direct.layout.rows.ids().map(|row| {
-            // Terms of the fields whose time derivative the balance holds: others have units of their own.
-            let own = |jet: &Jet| jet.t == 0 && self.direct.has_mass(row, jet.of);
-            let terms = self.direct.term_sizes(row, k, own);
+            let terms = self
+                .direct
+                .term_sizes(row, k, |jet| jet.t == 0 && chosen(row, jet));
             let mass = self.direct.term_sizes(row, k, |jet| jet.t > 0);
             let rates = terms.iter().zip(mass).map(|(t, m)| t / m);
             median(rates.filter(|rate| rate.is_finite()).collect())
         });
         rates.filter(|r| *r > 0.0).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// L, M0 and the boundary conditions around the base state of `states`.
+fn linear(states: &mut States, resolution: Option<usize>) -> Result<Direct> {
+    let (base, space) = (states.base, states.space.clone());
+    let structure = base.structure();
+    let layout = Layout::staggered(&structure.offsets, resolution)?;
+    let (column_turns, row_turns) = turns(structure);
+    Ok(LinearProblem {
+        walls: conditions::direct(base),
+        terms: terms(
+            states,
+            &layout,
+            &structure.linear,
+            KernelId::Linear,
+            |row| structure.balances[row].clone(),
+        )?,
+        column_turns,
+        row_turns,
+        space,
+        layout,
+    })
 }
 
 /// The middle value, or zero of none.

@@ -6,8 +6,8 @@
 
 use super::{Blocks, Problem};
 use crate::model::{C64, FieldId, Table};
-use crate::numerics::Applied;
 use crate::numerics::dense::Scalar;
+use crate::numerics::{Applied, Noise};
 use crate::space::Block;
 
 /// The least noise, in units of the machine's precision; without a cross-stream coordinate it is that.
@@ -60,7 +60,9 @@ impl Problem {
 
     /// The known fields with all that count beside them, row by row.
     fn present(&self, known: Known, shares: &[Table<FieldId, f64>]) -> Vec<FieldId> {
-        let noise = noise(self.resolution);
+        // Data that are disturbed leave more of an absent field.
+        let disturbed = self.noise.map_or(1.0, |_| Noise::SIZE / f64::EPSILON);
+        let noise = disturbed * noise(self.resolution);
         let Known { mut fields, rows } = known;
         loop {
             // Beside what is known, in the row in which it counts most.

@@ -13,6 +13,7 @@ pub use derivative::Derivative;
 pub use layout::{Block, Layout};
 
 use crate::model::{C64, End};
+use crate::numerics::Noise;
 use chebyshev::{Grid, GridKind, clenshaw_curtis, coefficients};
 use faer::Mat;
 use std::collections::HashMap;
@@ -69,6 +70,8 @@ type MatrixKey = (GridKind, GridKind, usize);
 #[derive(Default)]
 pub struct Matrices {
     known: Mutex<HashMap<MatrixKey, Arc<Mat<f64>>>>,
+    /// Matrices whose entries these are, times the factors of a noise.
+    disturbed: Option<(Arc<Matrices>, Noise)>,
 }
 
 impl Matrices {
@@ -80,8 +83,21 @@ impl Matrices {
         };
         known
             .entry((from, to, order))
-            .or_insert_with(|| Arc::new(Grid::new(from).derivative_on(&Grid::new(to), order)))
+            .or_insert_with(|| Arc::new(self.made(from, to, order)))
             .clone()
+    }
+
+    fn made(&self, from: GridKind, to: GridKind, order: usize) -> Mat<f64> {
+        let Some((exact, noise)) = &self.disturbed else {
+            return Grid::new(from).derivative_on(&Grid::new(to), order);
+        };
+        let exact = exact.get(from, to, order);
+        let (rows, columns) = (exact.nrows(), exact.ncols());
+        let noise = noise.stream(rows as u64).stream(columns as u64);
+        let noise = noise.stream(order as u64);
+        Mat::from_fn(rows, columns, |i, j| {
+            exact[(i, j)] * noise.factor(i * columns + j)
+        })
     }
 }
 
@@ -113,6 +129,17 @@ impl Space {
     /// The same interval without a stretched coordinate.
     pub fn plain(&self) -> Self {
         Space::new(self.ends, self.matrices.clone())
+    }
+
+    /// The same interval, every entry of its differentiation matrices times a factor of the noise.
+    pub fn disturbed(&self, noise: Noise) -> Self {
+        Space {
+            matrices: Arc::new(Matrices {
+                known: Mutex::default(),
+                disturbed: Some((self.matrices.clone(), noise)),
+            }),
+            ..self.clone()
+        }
     }
 
     /// The same interval in the coordinate of another space.

@@ -17,6 +17,8 @@ use iteration::refine;
 
 /// Cosine between a mode and its continuation below which it counts as another mode.
 const SAME_SHAPE: f64 = 0.6;
+/// Eigenvalues below this part of the rates that their terms have are zero.
+const ZERO: f64 = 1e-12;
 /// Two eigenvalues nearer than this, relative to themselves or the scale of the slow ones, are one that is
 /// not simple: rounding splits a defective one by the root of the machine's precision.
 const SIMPLE: f64 = 1e-7;
@@ -179,6 +181,17 @@ fn no_modes() -> Error {
     Error::computation("the linear problem has no finite eigenvalue")
 }
 
+/// The scale of the slow part of a spectrum, or the rate of the slowest balance where the eigenvalues are zero to
+/// rounding beside it.
+pub fn unit_of_time(problem: &Problem, k: f64, spectrum: &Spectrum) -> f64 {
+    let (scale, rate) = (spectrum.scale(), problem.rate(k));
+    if rate.is_finite() && scale <= ZERO * rate {
+        rate
+    } else {
+        scale
+    }
+}
+
 /// The mode after inverse iteration, where its eigenvalue is simple.
 fn confirm(
     problem: &Problem,
@@ -186,12 +199,10 @@ fn confirm(
     spectrum: &Spectrum,
     (c, right): (C64, Turned),
 ) -> Result<EigenPair> {
-    let scale = match spectrum.scale() {
-        0.0 => problem.rate(k),
-        scale => scale,
-    };
+    let scale = unit_of_time(problem, k, spectrum);
     let gap = spectrum.gap(c);
-    if gap <= SIMPLE * c.norm().max(scale) {
+    // A single eigenvalue is simple.
+    if gap.is_finite() && gap <= SIMPLE * c.norm().max(scale) {
         return Err(Error::NotSimple { c, k, gap });
     }
     // The left vector comes from the iteration itself; any start that is not orthogonal will do.

@@ -1,25 +1,17 @@
-//! How far a Landau point can be trusted.
-//!
-//! Differences that truncation, rounding and the base state's own error show themselves in: another M,
-//! M + 1 (which rounds differently), the base state at the next degree, the continuous adjoint; and what a
-//! relative change of the data by the machine's precision does.
+//! How far a Landau point can be trusted: errors of c0 and c2, distances from resonance, and what they leave standing.
 
 use super::Setup;
+use super::error_bars::Companions;
 use super::quadrature::{adjoint_mode, second_landau};
 use crate::base::BaseState;
 use crate::error::{Error, Result};
+use crate::measured::{Decided, Measured};
 use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum;
-use crate::weakly::{self, CANCELLED_SUM, LandauPoint};
+use crate::weakly::{self, AmplitudeEquation, CANCELLED_SUM, LandauPoint, Selection};
+use std::slice;
 use std::sync::Arc;
-
-/// A relative change of k, small enough for its effect to be linear, and large against rounding.
-const NUDGE: f64 = 1e-6;
-/// Rounding errors of the data that a result is allowed to be wrong by, in units of the machine's precision.
-const ROUNDINGS: f64 = 32.0;
-/// Safety factors of two differences that show rounding, which is as good as random.
-const SAFETY: f64 = 5.0;
 
 /// A second-order problem that is nearer to singularity than this, relative to the slow rates, has no answer
 /// that rounding leaves standing.
@@ -29,6 +21,10 @@ pub const SINGULAR: f64 = 1e-8;
 pub const UNCONVERGED: f64 = 0.05;
 /// Below this part of what it is the sum of, a coefficient counts as a computed zero.
 const CANCELLED: f64 = 1e-6;
+/// Below this M a distance from resonance is compared with that at a finer collocation.
+const FEW: usize = 13;
+/// Rounding errors of an eigenvalue of a whole spectrum, relative to the slow ones.
+const ROUNDING: f64 = 1e-13;
 /// An error that is a larger part of c2 may be that of a c2 of rounding alone.
 const SUSPECT: f64 = 1e-4;
 
@@ -41,28 +37,13 @@ pub struct Accuracy {
     pub c2: f64,
 }
 
-impl Accuracy {
-    /// At least the difference of two computations, times a factor of safety.
-    fn widen(&mut self, factor: f64, point: &LandauPoint, (c0, c2): (C64, C64)) {
-        let wider = |error: f64, difference: f64| {
-            if difference.is_finite() {
-                error.max(factor * difference)
-            } else {
-                f64::INFINITY
-            }
-        };
-        self.c0 = wider(self.c0, (c0 - point.c0).norm());
-        self.c2 = wider(self.c2, (c2 - point.c2).norm());
-    }
-}
-
 /// Distances of the second-order problems from singularity.
 #[derive(Clone, Copy, Debug)]
 pub struct Resonance {
-    /// min |2 a0 − λ(L_0)|, conserved directions set aside, P (5.5).
-    pub mean_flow: f64,
+    /// min |2 a0 − λ(L_0)|, conserved directions set aside, P (5.5); infinite where no mean mode is left.
+    pub mean_flow: Measured,
     /// min |2 c0 − λ(L_2)|, P (5.6).
-    pub second_harmonic: f64,
+    pub second_harmonic: Measured,
 }
 
 /// The errors of a Landau point; infinite where one of the computations beside it has no answer.
@@ -70,55 +51,101 @@ pub struct Resonance {
 /// # Errors
 /// A c2 by quadrature that cannot be formed.
 pub fn accuracy(setup: &Setup, point: &LandauPoint) -> Result<Accuracy> {
-    let [c0, c2] = point.rounding();
-    let mut found = Accuracy { c0, c2 };
-    let k = point.k();
-    let problem = &point.problem;
-    let missing = (C64::new(f64::INFINITY, 0.0), C64::new(f64::INFINITY, 0.0));
-    // |dc/dk| k ε, wherever c2 is sensitive, near a resonance too.
-    let nudged = spectrum::follow(problem, k * (1.0 + NUDGE), &point.pair)
-        .and_then(|pair| weakly::from_pair(problem, pair))
-        .map_or(missing, |p| (p.c0, p.c2));
-    found.widen(ROUNDINGS * f64::EPSILON / NUDGE, point, nudged);
-    let (m, base) = (setup.effective_resolution(), &problem.base);
-    if let Some((m, finer)) = m.zip(setup.finer_resolution()) {
-        let near = beside(base, point, Some(m + 1)).unwrap_or(missing);
-        found.widen(SAFETY, point, near);
-        let finer = beside(base, point, Some(finer)).unwrap_or(missing);
-        found.widen(1.0, point, finer);
+    let companions = Companions::of(setup, &point.problem, slice::from_ref(&point.pair));
+    let errors = companions.errors(&[point.c0, point.c2], |companion| {
+        let beside = weakly::from_pair(&companion.problem, companion.pairs[0].clone())?;
+        Ok(vec![beside.c0, beside.c2])
+    });
+    let [c0, c2] = [errors[0], errors[1]];
+    Accuracy { c0, c2 }.beside_the_adjoint(point)
+}
+
+/// A Landau point whose coefficients are converged.
+pub struct Converged {
+    /// The point.
+    pub point: LandauPoint,
+    /// Errors of its coefficients.
+    pub error: Accuracy,
+}
+
+impl Converged {
+    /// The Landau point of a selected mode.
+    ///
+    /// # Errors
+    /// A mode that is not found, a resonance, a coefficient that is not converged.
+    pub fn new(setup: &Setup, base: &Arc<BaseState>, k: f64, selection: Selection) -> Result<Self> {
+        let point = setup.point(base, k, selection)?;
+        let error = standing(setup, &point, accuracy(setup, &point)?)?;
+        Ok(Converged { point, error })
     }
-    if let Some(refined) = base.refined() {
-        let same = beside(&Arc::new(refined), point, m).unwrap_or(missing);
-        found.widen(SAFETY, point, same);
+
+    /// A_e at cubic order, or why there is none.
+    pub fn amplitude(&self) -> Decided {
+        let equation = AmplitudeEquation {
+            coefficients: vec![
+                Measured::new(self.point.c0, self.error.c0),
+                Measured::new(self.point.c2, self.error.c2),
+            ],
+        };
+        equation.equilibrium(3)
     }
-    // Without adjoint conditions, or where the adjoint mode hides in a cluster, one route remains.
-    if let Ok(adjoint) = adjoint_mode(problem, &point.pair) {
-        found.c0 = found.c0.max((adjoint.c.conj() - point.c0).norm());
-        if let Some(c2) = second_landau(point, &adjoint)? {
-            found.c2 = found.c2.max((c2 - point.c2).norm());
+}
+
+impl Accuracy {
+    /// No smaller than rounding and the difference to the second route, by the continuous adjoint.
+    ///
+    /// # Errors
+    /// A c2 by quadrature that cannot be formed.
+    pub fn beside_the_adjoint(mut self, point: &LandauPoint) -> Result<Self> {
+        let [rounding0, rounding2] = point.rounding();
+        self.c0 = self.c0.max(rounding0);
+        self.c2 = self.c2.max(rounding2);
+        // Without adjoint conditions, or where the adjoint mode hides in a cluster, one route remains.
+        if let Ok(adjoint) = adjoint_mode(&point.problem, &point.pair) {
+            self.c0 = self.c0.max((adjoint.c.conj() - point.c0).norm());
+            if let Some(c2) = second_landau(point, &adjoint)? {
+                self.c2 = self.c2.max((c2 - point.c2).norm());
+            }
         }
+        Ok(self)
     }
-    Ok(found)
 }
 
-/// c0 and c2 of the same mode on another collocation, or another base state.
-pub fn beside(
-    base: &Arc<BaseState>,
-    point: &LandauPoint,
-    resolution: Option<usize>,
-) -> Result<(C64, C64)> {
-    let other = Arc::new(Problem::new(base, resolution)?);
-    let pair = spectrum::transferred(&point.problem, &point.pair, &other)?;
-    let point = weakly::from_pair(&other, pair)?;
-    Ok((point.c0, point.c2))
-}
-
-/// How near the second-order problems are to resonance.
+/// How near the second-order problems are to resonance; the errors are what a coarser collocation changes (a finer one
+/// where M is small), and what the error of c0 does.
 ///
 /// # Errors
 /// Spectra that cannot be computed.
-pub fn resonance(point: &LandauPoint) -> Result<Resonance> {
+pub fn resonance(point: &LandauPoint, error0: f64) -> Result<Resonance> {
     let problem = &point.problem;
+    let here = distances(problem, point)?;
+    let beside = problem.resolution.map(|m| {
+        let m = if m < FEW {
+            m + m.div_ceil(2)
+        } else {
+            m - m.div_ceil(6)
+        };
+        let beside = Problem::new(&problem.base, Some(m))?;
+        distances(&beside, point)
+    });
+    let measured = |index: usize| {
+        let value: f64 = here[index];
+        let difference = match &beside {
+            Some(Ok(there)) if there[index] != value => (there[index] - value).abs(),
+            Some(Err(_)) => f64::INFINITY,
+            _ => 0.0,
+        };
+        let rounding = ROUNDING * (value + slow_rate(point));
+        Measured::new(value, difference.max(rounding) + 2.0 * error0)
+    };
+    Ok(Resonance {
+        mean_flow: measured(0),
+        second_harmonic: measured(1),
+    })
+}
+
+/// The distances of 2 a0 from the eigenvalues at k = 0, and of 2 c0 from those at 2k.
+fn distances(problem: &Problem, point: &LandauPoint) -> Result<[f64; 2]> {
     let second = spectrum::eigenvalues(problem, 2.0 * point.k())?;
     // A model whose mean modes are all closed by integrals has no mean spectrum to meet.
     let mean_flow = match spectrum::eigenvalues(problem, 0.0) {
@@ -126,10 +153,7 @@ pub fn resonance(point: &LandauPoint) -> Result<Resonance> {
         Err(Error::Input(message)) => return Err(Error::Input(message)),
         Err(_) => f64::INFINITY,
     };
-    Ok(Resonance {
-        mean_flow,
-        second_harmonic: second.distance(2.0 * point.c0),
-    })
+    Ok([mean_flow, second.distance(2.0 * point.c0)])
 }
 
 /// Whether an error leaves a coefficient of some size standing; `sum` is what its terms have the size of.
@@ -153,6 +177,50 @@ pub fn landau_error(point: &LandauPoint, error: f64) -> Option<f64> {
     let error = error.max(CANCELLED_SUM * sum);
     let known = stands(error, size, point.size()) || vanishes(error, size, sum);
     known.then_some(error)
+}
+
+/// The errors of coefficients that they leave standing.
+///
+/// # Errors
+/// A coefficient that is not converged.
+pub fn standing(setup: &Setup, point: &LandauPoint, error: Accuracy) -> Result<Accuracy> {
+    let size = point.c0.norm();
+    if !stands(error.c0, size, slow_rate(point)) {
+        return Err(unconverged(setup, "c0", error.c0, size));
+    }
+    match landau_error(point, error.c2) {
+        Some(c2) => Ok(Accuracy { c2, ..error }),
+        None => Err(unconverged(setup, "c2", error.c2, point.c2.norm())),
+    }
+}
+
+/// What to say of a coefficient that is not converged.
+pub fn unconverged(setup: &Setup, name: &str, error: f64, size: f64) -> Error {
+    let how_far = match error.is_finite() {
+        true if size <= error => {
+            format!("it is {size:.1e} with an error of {error:.1e}")
+        }
+        true => format!(
+            "its error is {:.1} times its size",
+            error / size.max(1e-300)
+        ),
+        false if setup.effective_resolution().is_none() => {
+            "a change of the data in the last digits has no such mode".to_owned()
+        }
+        false => "another resolution has no such mode".to_owned(),
+    };
+    let mut found = Error::unresolved(name, setup.effective_resolution(), how_far);
+    if let Error::Unresolved {
+        advice,
+        resolution: Some(_),
+        ..
+    } = &mut found
+        && error > 0.5 * size
+    {
+        *advice += "; where that does not help, another mode (--near): one that changes with every M is singular at a \
+                    wall, or one of a continuous spectrum";
+    }
+    found
 }
 
 /// What a distance from singularity is small or large against: the slow eigenvalues, or the terms of the slowest

@@ -1,20 +1,23 @@
 //! Amplitude equations of any modes, with everything that they rest on: what `amplitudes` prints.
 
+use super::accuracy::{stands, unconverged, vanishes};
+use super::error_bars::{Companion, Companions};
 use super::orders::HIGHEST;
+use super::states::States;
 use super::verify::residual_order;
 use super::{Setup, check_wavenumber};
-use crate::base::BaseState;
 use crate::error::{Error, Result};
+use crate::measured::Measured;
 use crate::model::C64;
 use crate::numerics::dense::dot;
 use crate::problem::Problem;
 use crate::series::Monomial;
 use crate::spectrum::{self, EigenPair};
 use crate::weakly::{
-    AmplitudeSystem, Distance, Equilibrium, Expansion, Selection, equilibria, power, select,
+    self, AmplitudeSystem, CriticalMode, Distance, Expansion, Selection, power, select,
 };
 use crate::words;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::fmt;
 use std::sync::Arc;
 
@@ -22,10 +25,8 @@ use std::sync::Arc;
 pub const SMALL: f64 = 5e-3;
 /// Small divisors that are named in words.
 pub const NAMED: usize = 4;
-/// Rounding errors of the data that a result is allowed to be wrong by, and the change of k that shows them.
-const ROUNDING: (f64, f64) = (32.0 * f64::EPSILON, 1e-6);
-/// The safety factor of differences that show rounding.
-const SAFETY: f64 = 5.0;
+/// Rounding errors of a coefficient at least, relative.
+const ROUNDING: f64 = 1e-14;
 
 /// A mode that is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -42,20 +43,7 @@ pub struct Coefficient {
     /// z^p z̄^s
     pub monomial: Monomial,
     /// Its coefficient.
-    pub g: C64,
-    /// Absolute error of the coefficient.
-    pub error: f64,
-}
-
-/// An equilibrium with a measure of trust.
-#[derive(Clone, Debug)]
-pub struct State {
-    /// The state.
-    pub equilibrium: Equilibrium,
-    /// Speed of a pattern that travels as a whole.
-    pub drift: Option<f64>,
-    /// The terms of the next order at it, relative to the largest there.
-    pub next_order: f64,
+    pub g: Measured<C64>,
 }
 
 /// The amplitude equations of some modes; owns its data.
@@ -79,7 +67,7 @@ pub struct AmplitudesReport {
     /// One a mode, linear terms first.
     pub equations: Vec<Vec<Coefficient>>,
     /// Up to phase.
-    pub equilibria: Vec<State>,
+    pub equilibria: States,
     /// One a problem that was solved.
     pub distances: Vec<Distance>,
     /// Rates that distances are small or large against.
@@ -125,29 +113,21 @@ impl AmplitudesReport {
         let longer = expansion.last_coefficients();
         let system = longer.part(1..=order);
         let next = longer.part(order + 1..=usize::MAX);
-        let errors = errors(setup, problem, &pairs, &system)?;
+        let companions = Companions::of(setup, problem, &pairs);
+        let errors = errors(&companions, problem, &pairs, &system)?;
+        check_converged(setup, problem, &pairs, &system, &errors)?;
+        let q: Vec<f64> = modes.iter().map(|(q, _)| *q).collect();
+        let states = States::of(&system, &errors, &next, &q);
+        let coefficient = |(term, error): (&weakly::Term, &f64)| Coefficient {
+            monomial: term.monomial.clone(),
+            g: Measured::new(term.g, *error),
+        };
         let equations: Vec<Vec<Coefficient>> = system
             .equations
             .iter()
-            .zip(errors)
-            .map(|(terms, errors)| {
-                let terms = terms.iter().zip(errors);
-                let own = terms.map(|(term, error)| Coefficient {
-                    monomial: term.monomial.clone(),
-                    g: term.g,
-                    error,
-                });
-                own.collect()
-            })
+            .zip(&errors)
+            .map(|(terms, errors)| terms.iter().zip(errors).map(coefficient).collect())
             .collect();
-        let q: Vec<f64> = modes.iter().map(|(q, _)| *q).collect();
-        let states = equilibria(&settled(&equations))
-            .into_iter()
-            .map(|equilibrium| State {
-                drift: equilibrium.drift(&q),
-                next_order: next_order(&system, &next, &equilibrium.z),
-                equilibrium,
-            });
         let structure = setup.model.structure();
         Ok(AmplitudesReport {
             model: structure.name.clone(),
@@ -158,7 +138,7 @@ impl AmplitudesReport {
             order,
             modes,
             normalization: structure.amplitude.description.clone(),
-            equilibria: states.collect(),
+            equilibria: states,
             equations,
             distances,
             slow_rate,
@@ -168,7 +148,7 @@ impl AmplitudesReport {
 
     /// The largest absolute error of a coefficient.
     pub fn error(&self) -> f64 {
-        let errors = self.equations.iter().flatten().map(|c| c.error);
+        let errors = self.equations.iter().flatten().map(|c| c.g.error);
         errors.fold(0.0, f64::max)
     }
 
@@ -182,31 +162,23 @@ impl AmplitudesReport {
         let modes: Vec<Value> = self
             .modes
             .iter()
-            .map(|(q, c)| json!({"q": [q], "c": words::complex(*c), "normalization": self.normalization}))
+            .zip(&self.equations)
+            .map(|((q, c), terms)| {
+                json!({"q": [q], "c": words::complex(*c), "error": words::number(terms[0].g.error),
+                       "normalization": self.normalization})
+            })
             .collect();
-        let term = |c: &Coefficient| json!({"z": c.monomial.z, "conj": c.monomial.conj, "g": words::complex(c.g), "error": words::number(c.error)});
+        let term = |c: &Coefficient| json!({"z": c.monomial.z, "conj": c.monomial.conj, "g": words::complex(c.g.value), "error": words::number(c.g.error)});
         let equations: Vec<Vec<Value>> = self
             .equations
             .iter()
             .map(|terms| terms.iter().map(term).collect())
             .collect();
-        let complex =
-            |values: &[C64]| -> Vec<Value> { values.iter().map(|c| words::complex(*c)).collect() };
-        let equilibria: Vec<Value> = self
-            .equilibria
-            .iter()
-            .map(|state| {
-                let e = &state.equilibrium;
-                json!({
-                    "z": complex(&e.z),
-                    "drift": state.drift.map(words::number),
-                    "frequencies": e.frequencies,
-                    "eigenvalues": e.eigenvalues.as_ref().map(|values| complex(values)),
-                    "stable": e.stable(),
-                    "next_order": words::number(state.next_order),
-                })
-            })
-            .collect();
+        let equilibria: Vec<Value> = self.equilibria.decided.iter().map(|s| s.json()).collect();
+        let mut not_decided = Map::new();
+        if let Some(reason) = self.equilibria.reason() {
+            not_decided.insert("equilibria".to_owned(), reason.into());
+        }
         let distances: Vec<Value> = self
             .distances
             .iter()
@@ -222,6 +194,7 @@ impl AmplitudesReport {
             "modes": modes,
             "equations": equations,
             "equilibria": equilibria,
+            "not_decided": not_decided,
             "error": words::number(self.error()),
             "distances": distances,
             "residual_order": self.residual_order.as_ref().ok(),
@@ -268,20 +241,6 @@ fn slow_rate(problem: &Problem, pairs: &[EigenPair]) -> f64 {
     rates.fold(0.0, f64::max)
 }
 
-/// The system without what errors leave nothing of.
-fn settled(equations: &[Vec<Coefficient>]) -> AmplitudeSystem {
-    let term = |c: &Coefficient| crate::weakly::Term {
-        monomial: c.monomial.clone(),
-        g: words::settled(c.g, 1e2 * c.error),
-    };
-    AmplitudeSystem {
-        equations: equations
-            .iter()
-            .map(|e| e.iter().map(term).collect())
-            .collect(),
-    }
-}
-
 /// A measure of trust: the largest over the equations of |Σ next terms| / the largest term.
 pub fn next_order(system: &AmplitudeSystem, next: &AmplitudeSystem, z: &[C64]) -> f64 {
     let rates = next.rates(z);
@@ -297,93 +256,117 @@ pub fn next_order(system: &AmplitudeSystem, next: &AmplitudeSystem, z: &[C64]) -
         .fold(0.0, f64::max)
 }
 
-/// Absolute errors of all coefficients: what truncation, rounding and the base state's own error show.
+/// Absolute errors of all coefficients, by equation and term.
+///
+/// # Errors
+/// Modes that the spec's normalisation does not fit.
 pub(super) fn errors(
-    setup: &Setup,
+    companions: &Companions,
     problem: &Arc<Problem>,
     pairs: &[EigenPair],
     system: &AmplitudeSystem,
 ) -> Result<Vec<Vec<f64>>> {
-    let mut errors: Vec<Vec<f64>> = system
-        .equations
-        .iter()
-        .map(|terms| terms.iter().map(|t| 1e-14 * t.g.norm()).collect())
-        .collect();
-    let mut widen = |factor: f64, other: Result<AmplitudeSystem>| {
-        for (j, terms) in system.equations.iter().enumerate() {
-            for (error, term) in errors[j].iter_mut().zip(terms) {
-                let found = other
-                    .as_ref()
-                    .ok()
-                    .and_then(|o| o.coefficient(j, &term.monomial));
-                let difference = found.map_or(f64::INFINITY, |g| factor * (g - term.g).norm());
-                *error = error.max(difference);
-            }
-        }
-    };
+    let here = Expansion::new(problem, pairs.to_vec())?.modes;
+    let flat: Vec<C64> = system.equations.iter().flatten().map(|t| t.g).collect();
     let order = system.order();
-    let (roundings, nudge) = ROUNDING;
-    let nudged: Result<Vec<EigenPair>> = pairs
-        .iter()
-        .map(|pair| spectrum::follow(problem, pair.k * (1.0 + nudge), pair))
-        .collect();
-    widen(
-        roundings / nudge,
-        nudged.and_then(|own| beside(problem, pairs, problem, own, order)),
-    );
-    let elsewhere = |base: &Arc<BaseState>, m: Option<usize>| -> Result<AmplitudeSystem> {
-        let other = Arc::new(Problem::new(base, m)?);
-        let found = pairs
-            .iter()
-            .map(|pair| spectrum::transferred(problem, pair, &other));
-        let found: Result<Vec<EigenPair>> = found.collect();
-        beside(problem, pairs, &other, found?, order)
+    let all = companions.errors(&flat, |companion| {
+        let there = beside(problem, &here, companion, order)?;
+        let missing = C64::new(f64::NAN, 0.0);
+        let mut values = Vec::with_capacity(flat.len());
+        for (j, terms) in system.equations.iter().enumerate() {
+            let coefficient = |term: &weakly::Term| there.coefficient(j, &term.monomial);
+            values.extend(terms.iter().map(|t| coefficient(t).unwrap_or(missing)));
+        }
+        Ok(values)
+    });
+    let mut all = all.into_iter();
+    let row = |terms: &Vec<weakly::Term>| -> Vec<f64> {
+        let errors = terms.iter().zip(all.by_ref());
+        errors
+            .map(|(t, error)| error.max(ROUNDING * t.g.norm()))
+            .collect()
     };
-    let (m, base) = (setup.effective_resolution(), &problem.base);
-    if let Some((m, finer)) = m.zip(setup.finer_resolution()) {
-        widen(SAFETY, elsewhere(base, Some(m + 1)));
-        widen(1.0, elsewhere(base, Some(finer)));
-    }
-    if let Some(refined) = base.refined() {
-        widen(SAFETY, elsewhere(&Arc::new(refined), m));
-    }
-    Ok(errors)
+    Ok(system.equations.iter().map(row).collect())
 }
 
-/// The coefficients of the same modes found elsewhere, with the phases that the modes have here.
+/// The coefficients of the same modes on a companion, with the phases that the modes have here.
 fn beside(
-    problem: &Arc<Problem>,
-    pairs: &[EigenPair],
-    other: &Arc<Problem>,
-    found: Vec<EigenPair>,
+    problem: &Problem,
+    here: &[CriticalMode],
+    companion: &Companion,
     order: usize,
 ) -> Result<AmplitudeSystem> {
-    let here = Expansion::new(problem, pairs.to_vec())?;
-    let there = Expansion::to(other, found, order - 1)?;
+    let there = Expansion::to(&companion.problem, companion.pairs.clone(), order - 1)?;
     let turns: Vec<f64> = here
-        .modes
         .iter()
         .zip(&there.modes)
         .map(|(a, b)| {
             let shape = problem.direct.turned(&a.profile.values);
-            let shape = spectrum::interpolated(problem, &shape, other);
-            dot(&shape, &other.direct.turned(&b.profile.values)).arg()
+            let shape = spectrum::interpolated(problem, &shape, &companion.problem);
+            let moved = companion.problem.direct.turned(&b.profile.values);
+            dot(&shape, &moved).arg()
         })
         .collect();
     let mut system = there.last_coefficients();
     // φ' = φ e^{iθ}: g' = g e^{iΣ θ (p − s)} e^{−iθ_j}
-    for (equation, own) in system.equations.iter_mut().zip(&turns) {
+    for (equation, turn) in system.equations.iter_mut().zip(&turns) {
         for term in equation {
-            let angle: f64 = term
-                .monomial
-                .differences()
-                .zip(&turns)
-                .map(|(d, t)| d * t)
-                .sum();
-            term.g *= C64::cis(own - angle);
+            let differences = term.monomial.differences().zip(&turns);
+            let angle: f64 = differences.map(|(d, t)| d * t).sum();
+            term.g *= C64::cis(turn - angle);
         }
     }
     Ok(system)
+}
+
+/// Refuses coefficients that are not converged, by the rule that a single mode's are held to: the error is a small part
+/// of the coefficient, or of what its terms have the size of.
+fn check_converged(
+    setup: &Setup,
+    problem: &Arc<Problem>,
+    pairs: &[EigenPair],
+    system: &AmplitudeSystem,
+    errors: &[Vec<f64>],
+) -> Result<()> {
+    let rate = slow_rate(problem, pairs);
+    let largest = |degree: usize| {
+        let terms = system.equations.iter().flatten();
+        let sizes = terms.filter(|t| t.monomial.degree() == degree);
+        sizes.map(|t| t.g.norm()).fold(0.0, f64::max)
+    };
+    let (quadratic, cubic) = (largest(2), largest(3));
+    // The amplitude at which terms of second or third degree balance the slow rates: A^{1−d} times the rates is the size
+    // of terms of degree d.
+    let sum = |degree: usize, cubic: f64| {
+        let inverse_amplitude = (quadratic / rate).max((cubic / rate).sqrt());
+        rate * inverse_amplitude.powi(degree as i32 - 1)
+    };
+    let uncancelled = || {
+        let sizes = pairs.iter().filter_map(|pair| {
+            let point = weakly::from_pair(problem, pair.clone()).ok()?;
+            Some(point.uncancelled())
+        });
+        sizes.fold(cubic, f64::max)
+    };
+    for (j, (terms, errors)) in system.equations.iter().zip(errors).enumerate() {
+        for (term, &error) in terms.iter().zip(errors) {
+            let (size, degree) = (term.g.norm(), term.monomial.degree());
+            let known = stands(error, size, sum(degree, cubic))
+                || vanishes(error, size, sum(degree, uncancelled()));
+            if !known {
+                let name = match degree {
+                    1 => format!("the eigenvalue of z{}", j + 1),
+                    _ => format!(
+                        "the coefficient of {} in dz{}/dt",
+                        term.monomial.name(),
+                        j + 1
+                    ),
+                };
+                return Err(unconverged(setup, &name, error, size));
+            }
+        }
+    }
+    Ok(())
 }
 
 impl fmt::Display for AmplitudesReport {
@@ -397,54 +380,29 @@ impl fmt::Display for AmplitudesReport {
             true => writeln!(f, ", M = {}", self.resolution)?,
             false => writeln!(f)?,
         }
-        for (j, (q, c)) in self.modes.iter().enumerate() {
-            let wave = format!("e^(i {q} x)");
-            writeln!(
-                f,
-                "  z{}: {wave}, c = {}, normalised by {}",
-                j + 1,
-                words::shown(*c),
-                self.normalization
-            )?;
+        for (j, ((q, _), terms)) in self.modes.iter().zip(&self.equations).enumerate() {
+            let (wave, c) = (format!("e^(i {q} x)"), terms[0].g);
+            let by = &self.normalization;
+            writeln!(f, "  z{}: {wave}, c = {c}, normalised by {by}", j + 1)?;
         }
         for (j, equation) in self.equations.iter().enumerate() {
             writeln!(f, "  dz{}/dt =", j + 1)?;
             for term in equation {
-                let g = words::settled(term.g, term.error);
-                let name = term.monomial.name();
-                writeln!(
-                    f,
-                    "    {name:<16} {}   ± {:.1e}",
-                    words::shown(g),
-                    term.error
-                )?;
+                writeln!(f, "    {:<16} {}", term.monomial.name(), term.g)?;
             }
         }
-        if self.equilibria.is_empty() {
-            writeln!(f, "  no equilibrium but zero")?;
-        } else {
-            writeln!(f, "  equilibria, up to phase:")?;
+        let States { decided, .. } = &self.equilibria;
+        let reason = self.equilibria.reason();
+        match (decided.is_empty(), &reason) {
+            (true, None) => writeln!(f, "  no equilibrium but zero")?,
+            (true, Some(_)) => {}
+            (false, _) => writeln!(f, "  equilibria, up to phase:")?,
         }
-        for state in &self.equilibria {
-            let z = state.equilibrium.z.iter().map(|z| words::shown(*z));
-            let verdict = match state.equilibrium.stable() {
-                Some(true) => "stable",
-                Some(false) => "unstable",
-                None => "stability varies in time",
-            };
-            write!(
-                f,
-                "    z = ({}), {verdict}",
-                z.collect::<Vec<_>>().join(", ")
-            )?;
-            if let Some(drift) = state.drift.filter(|d| *d != 0.0) {
-                write!(f, ", travels at {drift:.6e}")?;
-            }
-            writeln!(
-                f,
-                "; the next order adds {:.1e} of the largest term",
-                state.next_order
-            )?;
+        for state in decided {
+            writeln!(f, "    {state}")?;
+        }
+        if let Some(reason) = reason {
+            writeln!(f, "  {reason}")?;
         }
         let q: Vec<f64> = self.modes.iter().map(|(q, _)| *q).collect();
         let small = self.small_divisors();

@@ -5,6 +5,7 @@ pub mod amplitudes;
 mod bases;
 pub mod critical;
 pub mod derived;
+pub mod error_bars;
 pub mod identity;
 mod journal;
 use bases::Bases;
@@ -22,6 +23,7 @@ pub mod row;
 pub mod sensitivity;
 pub mod shard;
 pub mod spectrum;
+pub mod states;
 pub mod sweep;
 pub mod verify;
 

@@ -1,5 +1,6 @@
 //! The modes of the expansion as profiles: what `point --plot` draws and `--out` stores.
 
+use super::accuracy::Converged;
 use super::quadrature::{AdjointMode, adjoint_mode};
 use super::{Setup, check_wavenumber};
 use crate::error::Result;
@@ -42,11 +43,11 @@ impl Modes {
     /// The modes at one wavenumber.
     ///
     /// # Errors
-    /// A mode that is not found, a resonance.
+    /// A mode that is not found, a resonance, a coefficient that is not converged.
     pub fn compute(setup: &Setup, k: f64, selection: Selection) -> Result<Self> {
         check_wavenumber(k)?;
         let base = setup.base(None)?;
-        let point = setup.point(&base, k, selection)?;
+        let point = Converged::new(setup, &base, k, selection)?.point;
         let problem = point.problem.as_ref();
         let places = problem.space().evenly(HEIGHTS);
         let expansion = Expansion::to(&point.problem, vec![point.pair.clone()], 3)?;

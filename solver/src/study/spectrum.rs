@@ -2,10 +2,13 @@
 
 use super::Setup;
 use super::accuracy::UNCONVERGED;
+use super::error_bars::{ROUNDINGS, TRUNCATION};
 use crate::error::{Error, Result};
+use crate::measured::Measured;
 use crate::model::C64;
+use crate::numerics::Noise;
 use crate::problem::Problem;
-use crate::spectrum::{Spectrum, adjoint_eigenvalues, eigenvalues};
+use crate::spectrum::{Spectrum, adjoint_eigenvalues, eigenvalues, unit_of_time};
 use crate::words;
 use serde_json::{Value, json};
 use std::fmt;
@@ -31,8 +34,10 @@ pub struct SpectrumReport {
     pub direct: Spectrum,
     /// Eigenvalues of L† in the order of their conjugates, or why there are none.
     pub adjoint: std::result::Result<Spectrum, String>,
-    /// Absolute error of the leading eigenvalue.
-    pub error: f64,
+    /// Absolute errors of the eigenvalues of L, the leading one first.
+    pub errors: Vec<f64>,
+    /// The unit of time of the slow eigenvalues.
+    scale: f64,
 }
 
 impl SpectrumReport {
@@ -50,6 +55,8 @@ impl SpectrumReport {
         let problem = setup.problem(&base)?;
         let direct = eigenvalues(&problem, k)?;
         let adjoint = adjoint_eigenvalues(&problem, k).map_err(|e| e.to_string());
+        let scale = unit_of_time(&problem, k, &direct);
+        let errors = errors(setup, &problem, k, &direct, scale)?;
         let structure = setup.model.structure();
         Ok(SpectrumReport {
             model: structure.name.clone(),
@@ -58,7 +65,8 @@ impl SpectrumReport {
             k,
             resolution: setup.resolution,
             has_coordinate: structure.coordinate.is_some(),
-            error: error(setup, &problem, k, &direct)?,
+            errors,
+            scale,
             direct,
             adjoint,
         })
@@ -85,7 +93,8 @@ impl SpectrumReport {
             "k": self.k,
             "M": self.resolution,
             "direct": list(&self.direct),
-            "error": self.error,
+            "error": self.errors.first().map(|&e| words::number(e)),
+            "errors": self.errors.iter().map(|&e| words::number(e)).collect::<Vec<_>>(),
         });
         match &self.adjoint {
             Ok(spectrum) => {
@@ -101,21 +110,38 @@ impl SpectrumReport {
     }
 }
 
-/// How far another M moves the leading eigenvalue.
-fn error(setup: &Setup, problem: &Problem, k: f64, direct: &Spectrum) -> Result<f64> {
-    let leading = direct.values.first().copied().unwrap_or_default();
-    let scale = direct.scale().max(leading.norm());
-    let Some(finer) = setup.finer_resolution() else {
-        return Ok(1e-14 * scale);
+/// How far another M, or other rounding where there is none, moves each eigenvalue.
+fn errors(
+    setup: &Setup,
+    problem: &Problem,
+    k: f64,
+    direct: &Spectrum,
+    scale: f64,
+) -> Result<Vec<f64>> {
+    let (beside, weight) = match setup.finer_resolution() {
+        Some(finer) => (Problem::new(&problem.base, Some(finer))?, TRUNCATION),
+        None => {
+            let weight = ROUNDINGS * f64::EPSILON / Noise::SIZE;
+            (problem.disturbed(Noise::new(0)), weight)
+        }
     };
-    let other = Problem::new(&problem.base, Some(finer))?;
-    let error = eigenvalues(&other, k)?.distance(leading).max(1e-14 * scale);
-    if error > UNCONVERGED * scale {
+    let there = eigenvalues(&beside, k)?;
+    let rounding = |c: C64| 1e-14 * scale.max(c.norm());
+    let error = |&c: &C64| (weight * there.distance(c)).max(rounding(c));
+    let errors: Vec<f64> = direct.values.iter().map(error).collect();
+    let leading = direct.values.first().zip(errors.first());
+    if let Some((c, error)) = leading
+        && !converged(*c, *error, scale)
+    {
         let what = format!("the leading eigenvalue at k = {k}");
         let how_far = format!("another M moves it by {error:.1e}");
         return Err(Error::unresolved(what, problem.resolution, how_far));
     }
-    Ok(error)
+    Ok(errors)
+}
+
+fn converged(c: C64, error: f64, scale: f64) -> bool {
+    error <= UNCONVERGED * scale.max(c.norm())
 }
 
 impl fmt::Display for SpectrumReport {
@@ -124,20 +150,32 @@ impl fmt::Display for SpectrumReport {
         if self.has_coordinate {
             write!(f, ", M = {}", self.resolution)?;
         }
-        writeln!(f, ": leading eigenvalues, the first ± {:.1e}", self.error)?;
-        write!(f, "{:>44}   {:>44}   {:>10}", "L", "L†", "difference")?;
+        writeln!(f, ": leading eigenvalues")?;
+        write!(f, "{:>50}   {:>50}   {:>10}", "L", "L†", "difference")?;
         let differences = self.differences();
-        let others: &[C64] = match &self.adjoint {
-            Ok(spectrum) => &spectrum.values,
-            Err(_) => &[],
-        };
-        for (i, &c) in self.direct.values.iter().take(SHOWN).enumerate() {
-            let other = others.get(i).map_or(String::new(), |&a| words::shown(a));
-            let difference = differences
-                .get(i)
-                .map_or(String::new(), |d| format!("{d:.1e}"));
-            let own = words::shown(c);
-            write!(f, "\n{own:>44}   {other:>44}   {difference:>10}")?;
+        let adjoint: &[C64] = self.adjoint.as_ref().map_or(&[], |s| &s.values);
+        let mut left_out = 0;
+        let rows = self.direct.values.iter().zip(&self.errors).enumerate();
+        for (i, (&c, &error)) in rows.take(SHOWN) {
+            if !converged(c, error, self.scale) {
+                left_out += 1;
+                continue;
+            }
+            let difference = differences.get(i).copied();
+            let of_adjoint = |&c: &C64| {
+                let error = error + difference.unwrap_or(0.0);
+                Measured::new(c, error).to_string()
+            };
+            let direct = Measured::new(c, error).to_string();
+            let adjoint = adjoint.get(i).map_or(String::new(), of_adjoint);
+            let difference = difference.map_or(String::new(), |d| format!("{d:.1e}"));
+            write!(f, "\n{direct:>50}   {adjoint:>50}   {difference:>10}")?;
+        }
+        if left_out > 0 {
+            write!(
+                f,
+                "\n{left_out} of the first {SHOWN} are not converged at this M and left out"
+            )?;
         }
         if let Err(reason) = &self.adjoint {
             write!(f, "\nL†: {reason}")?;

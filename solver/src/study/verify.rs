@@ -351,7 +351,7 @@ fn convergence(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
             "last Chebyshev coefficients over the largest",
         ));
     }
-    let resonance = resonance(point)?;
+    let resonance = resonance(point, error.c0)?;
     let scale = slow_rate(point);
     let mut distance = |name: &str, value: f64, detail: &str| {
         checks.push(match value <= SINGULAR * scale {
@@ -362,18 +362,18 @@ fn convergence(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
             false => Check::report(5, name, value, detail),
         });
     };
-    if resonance.mean_flow.is_finite() {
+    if resonance.mean_flow.value.is_finite() {
         let detail = "distance of the k = 0 problem from singularity";
         distance(
             "distance to mean-flow resonance",
-            resonance.mean_flow,
+            resonance.mean_flow.value,
             detail,
         );
     }
     let detail = "distance of the 2k problem from singularity";
     distance(
         "distance to 2:1 resonance",
-        resonance.second_harmonic,
+        resonance.second_harmonic.value,
         detail,
     );
     for multiplier in &point.multipliers {

@@ -1,6 +1,7 @@
 //! The envelope of one mode: ∂A/∂t = c0 A − i c0' ∂A/∂x − ½ c0'' ∂²A/∂x² + c2 |A|² A.
 
 use crate::error::{Error, Result};
+use crate::measured::{Decided, Measured};
 use crate::model::C64;
 use crate::numerics::Applied;
 use crate::numerics::dense::{Factorised, bordered, dot};
@@ -61,10 +62,15 @@ impl Envelope {
     pub fn group_velocity(&self) -> f64 {
         0.0 - self.slope.im
     }
+}
 
-    /// The Benjamin–Feir–Newell number 1 + (Im c0''/Re c0'')(Im c2/Re c2): a uniform wave is stable where it is
-    /// positive.
-    pub fn benjamin_feir(&self, c2: C64) -> f64 {
-        1.0 + (self.curvature.im / self.curvature.re) * (c2.im / c2.re)
-    }
+/// The Benjamin–Feir–Newell number 1 + (Im c0''/Re c0'')(Im c2/Re c2) of c0'' = `curvature`: a uniform wave is stable
+/// where it is positive. The reason where a divisor is zero within its error.
+pub fn benjamin_feir(curvature: Measured<C64>, c2: Measured<C64>) -> Decided {
+    let ratio = |c: Measured<C64>, name: &str| {
+        let zero = || format!("the real part of {name} is zero within its error");
+        c.im().over(c.re()).ok_or_else(zero)
+    };
+    let product = ratio(curvature, "d²c0/dk²")? * ratio(c2, "c2")?;
+    Ok(Measured::new(1.0, 0.0) + product)
 }

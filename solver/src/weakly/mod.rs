@@ -12,13 +12,14 @@ mod normalisation;
 mod outputs;
 mod pattern;
 mod response;
+mod standing;
 mod system;
 mod waves;
 
 pub use amplitude::AmplitudeEquation;
 pub use bifurcation::{Bifurcation, Side, equilibrium};
 pub use cubic::{CANCELLED_SUM, LandauPoint, Selection, from_pair, point, select, warm_point};
-pub use envelope::Envelope;
+pub use envelope::{Envelope, benjamin_feir};
 pub use equilibria::{Equilibrium, equilibria};
 pub use expansion::{CriticalMode, Distance, Expansion};
 pub use mode::Mode;

@@ -54,7 +54,9 @@ impl Mode {
                 derived.len() - 1
             });
             let factor = symbol(&jet, self.q);
-            derived[known].1.iter().map(|v| factor * v).collect()
+            let mut values: Vec<C64> = derived[known].1.iter().map(|v| factor * v).collect();
+            problem.disturb_jet(jet, &mut values);
+            values
         };
         jets.iter().map(column).collect()
     }

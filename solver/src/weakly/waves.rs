@@ -1,6 +1,7 @@
 //! Left and right: the two travelling waves of a mirror-symmetric model, and the standing wave that they make.
 
 use super::system::AmplitudeSystem;
+use crate::measured::Measured;
 use crate::model::C64;
 use crate::series::Monomial;
 use serde::Serialize;
@@ -10,11 +11,9 @@ use std::fmt;
 #[derive(Clone, Copy, Debug)]
 pub struct Waves {
     /// Of |R|² R: c2 of the travelling wave.
-    pub own: C64,
+    pub own: Measured<C64>,
     /// Of |L|² R.
-    pub cross: C64,
-    /// Absolute error of both.
-    pub error: f64,
+    pub cross: Measured<C64>,
 }
 
 /// Which wave is stable above onset, at cubic order.
@@ -25,7 +24,7 @@ pub enum Stable {
     Travelling,
     /// |R| = |L|
     Standing,
-    /// None of the two, or undecided.
+    /// None of the two.
     Neither,
 }
 
@@ -42,29 +41,72 @@ impl fmt::Display for Stable {
 impl Waves {
     /// Self and cross coefficient in the equation of the first of two waves, `errors` being those of its terms.
     pub fn of(system: &AmplitudeSystem, errors: &[f64]) -> Self {
-        let [own, cross] = [([2, 0], [1, 0]), ([1, 1], [0, 1])].map(|(z, conj)| Monomial {
-            z: z.to_vec(),
-            conj: conj.to_vec(),
-        });
-        let coefficient = |monomial| system.coefficient(0, monomial).unwrap_or_default();
+        let terms = || system.equations[0].iter().zip(errors);
+        let coefficient = |z: [u8; 2], conj: [u8; 2]| {
+            let monomial = Monomial {
+                z: z.to_vec(),
+                conj: conj.to_vec(),
+            };
+            let term = terms().find(|(term, _)| term.monomial == monomial);
+            term.map_or(Measured::new(C64::default(), 0.0), |(term, &error)| {
+                Measured::new(term.g, error)
+            })
+        };
         Waves {
-            own: coefficient(&own),
-            cross: coefficient(&cross),
-            error: errors.iter().skip(1).copied().fold(0.0, f64::max),
+            own: coefficient([2, 0], [1, 0]),
+            cross: coefficient([1, 1], [0, 1]),
         }
     }
 
-    /// Travelling waves exist above onset where Re self < 0, and are stable where besides Re cross < Re self;
-    /// standing ones where Re (self + cross) < 0, and Re cross > Re self. What the error leaves undecided is neither.
-    pub fn stable(&self) -> Stable {
-        let (own, cross) = (self.own.re, self.cross.re);
-        let below = |x: f64| x < -self.error;
-        if below(own) && below(cross - own) {
-            Stable::Travelling
-        } else if below(own + cross) && below(own - cross) {
-            Stable::Standing
+    /// Re (cross − self): where it is positive, the travelling wave is unstable to the other one.
+    fn excess(&self) -> Measured {
+        self.cross.re() - self.own.re()
+    }
+
+    /// Travelling waves exist above onset where Re self < 0, and are stable where besides Re cross < Re self; standing
+    /// ones exist where Re (self + cross) < 0, and are stable where besides Re cross > Re self. Nothing where errors
+    /// leave it undecided.
+    pub fn stable(&self) -> Option<Stable> {
+        let (own, excess) = (self.own.re(), self.excess());
+        let sum = own + self.cross.re();
+        if own.is_negative() && excess.is_negative() {
+            Some(Stable::Travelling)
+        } else if sum.is_negative() && excess.is_positive() {
+            Some(Stable::Standing)
         } else {
-            Stable::Neither
+            let no_travelling = own.is_positive() || excess.is_positive();
+            let no_standing = sum.is_positive() || excess.is_negative();
+            (no_travelling && no_standing).then_some(Stable::Neither)
         }
+    }
+
+    /// Whether the travelling wave resists the one to the other side; nothing where errors leave it undecided.
+    pub fn resists_the_opposite(&self) -> Option<bool> {
+        self.excess().sign().map(|sign| sign < 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{C64, Measured, Stable, Waves};
+
+    fn waves(own: f64, cross: f64) -> Option<Stable> {
+        let measured = |x: f64| Measured::new(C64::new(x, 1.0), 1e-3);
+        Waves {
+            own: measured(own),
+            cross: measured(cross),
+        }
+        .stable()
+    }
+
+    #[test]
+    fn what_errors_leave_undecided_is_no_verdict() {
+        assert_eq!(waves(-1.0, -2.0), Some(Stable::Travelling));
+        assert_eq!(waves(-1.0, 0.5), Some(Stable::Standing));
+        assert_eq!(waves(1.0, -3.0), Some(Stable::Neither));
+        assert_eq!(waves(1.0, 2.0), Some(Stable::Neither));
+        assert_eq!(waves(-1.0, -1.0005), None);
+        assert_eq!(waves(-1e-4, -2.0), None);
+        assert_eq!(waves(-1.0, 1.0), None);
     }
 }

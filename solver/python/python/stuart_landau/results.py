@@ -19,14 +19,21 @@ def _array(values: list[float | None]) -> np.ndarray:
     return np.array([math.nan if x is None else x for x in values], dtype=float)
 
 
-def _latex(value: complex) -> str:
-    def number(x: float) -> str:
-        mantissa, exponent = f"{x:.6e}".split("e")
-        if -4 < int(exponent) < 6:
-            return f"{x:.7g}"
-        return rf"{mantissa.rstrip('0').rstrip('.')}\times 10^{{{int(exponent)}}}"
+def _latex(value: complex, error: float | None) -> str:
+    """A number with seven digits at most, and none beyond its error."""
+    error = math.inf if error is None else error
 
-    if value.imag == 0:
+    def number(x: float) -> str:
+        if abs(x) <= error:
+            return "0"
+        known = 7 if error == 0 else math.floor(math.log10(abs(x))) - math.floor(math.log10(error)) + 1
+        digits = max(1, min(7, known))
+        mantissa, exponent = f"{x:.{digits - 1}e}".split("e")
+        if -4 < int(exponent) < digits:
+            return f"{x:.{digits - 1 - int(exponent)}f}"
+        return rf"{mantissa}\times 10^{{{int(exponent)}}}"
+
+    if abs(value.imag) <= error:
         return number(value.real)
     sign = "-" if value.imag < 0 else "+"
     return rf"\left({number(value.real)} {sign} {number(abs(value.imag))}\,i\right)"
@@ -37,6 +44,8 @@ class Result:
 
     def __init__(self, model: Any, data: Any, resolution: int = 50) -> None:
         self.model = model
+        #: What the command line prints, where the library has words for the answer.
+        self._text: str | None = data.pop("text", None) if isinstance(data, dict) else None
         self.data = data
         #: M
         self.resolution = resolution
@@ -74,12 +83,16 @@ class Result:
         return self.model.title
 
     def __repr__(self) -> str:
+        if self._text is not None:
+            return self._text
         width = max((len(name) for name, _ in self._rows()), default=0)
         lines = [self._heading()]
         lines += [f"  {name:<{width}}  {value}" for name, value in self._rows()]
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
+        if self._text is not None:
+            return f"<pre>{html.escape(self._text)}</pre>"
         cells = "".join(
             f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
             f"<td style='text-align:left'>{html.escape(value)}</td></tr>"
@@ -158,11 +171,9 @@ class Spectrum(Result):
         self.direct = np.array([_complex(c) for c in data["direct"]])
         adjoint = data.get("adjoint")
         self.adjoint = np.array([_complex(c) for c in adjoint]) if isinstance(adjoint, list) else None
-        #: Absolute error of the leading eigenvalue.
+        #: Absolute error of the leading eigenvalue, and of every one.
         self.error: float = data["error"]
-
-    def _rows(self) -> list[tuple[str, str]]:
-        return [(f"c[{i}]", f"{c:.10g}") for i, c in enumerate(self.direct[:6])]
+        self.errors = _array(data["errors"])
 
     def to_xarray(self) -> Any:
         """Eigenvalues over the number of the mode, by decreasing growth rate; of L† nan where it has fewer."""
@@ -190,15 +201,20 @@ class Spectrum(Result):
 
 
 class Point(Result):
-    """A Landau point. `c0`, `c2`, … (`coefficients`): dA/dt = a0 A + a2 A³ + …; `error`: absolute, by coefficient."""
+    """A Landau point. `c0`, `c2`, … (`coefficients`): dA/dt = a0 A + a2 A³ + …; `error`: absolute, by name."""
 
     def __init__(self, model: Any, data: dict[str, Any], resolution: int = 50) -> None:
         super().__init__(model, data, resolution)
         self.k: float = data["k"]
         self.parameters: dict[str, Any] = data["parameters"]
-        self.error: dict[str, float] = data["error"]
+        #: Absolute errors under the names of what they are the errors of.
+        self.error: dict[str, Any] = data["error"]
+        #: Why a value is None, by the path of its keys: `amplitude`, `envelope.benjamin_feir`.
+        self.not_decided: dict[str, str] = data["not_decided"]
         #: c0, c2, c4, …
-        self.coefficients = [_complex(data[name]) for name in self.error]
+        names = sorted((n for n in data if n[0] == "c" and n[1:].isdigit()), key=lambda n: int(n[1:]))
+        self.coefficients = [_complex(data[name]) for name in names]
+        self._errors = [self.error[name] for name in names]
         self.c0, self.c2 = self.coefficients[:2]
         #: A_e at cubic order, where there is one.
         self.amplitude: float | None = data["amplitude"]
@@ -210,11 +226,13 @@ class Point(Result):
         #: Value at the base state and A² correction, by name.
         self.outputs: dict[str, list[float]] = data["outputs"]
         #: dc0/d(parameter)
-        self.dc0 = {name: _complex(c) for name, c in data["dc0"].items()}
+        self.dc0 = {name: None if c is None else _complex(c) for name, c in data["dc0"].items()}
         #: dc0_dk, d2c0_dk2, group_velocity, benjamin_feir
         self.envelope: dict[str, Any] = data["envelope"]
         #: Self and cross coefficient of a wave in a mirror-symmetric model, and which wave is stable.
         self.waves: dict[str, Any] | None = data.get("waves")
+        #: Whether the state of amplitude A_e attracts; None where there is none or it is not decided.
+        self.stable: bool | None = data["stable"]
         self.small_divisors: list[str] = data["small_divisors"]
         #: What the base state satisfies but nearly, in words.
         self.notes: list[str] = data["notes"]
@@ -225,31 +243,13 @@ class Point(Result):
             return _complex(data[name])
         raise AttributeError(name)
 
-    def _heading(self) -> str:
-        return f"{self.model.title} at k = {self.k}"
-
-    def _rows(self) -> list[tuple[str, str]]:
-        rows = [
-            (name, f"{c.real if c.imag == 0 else c:.10g} ± {error:.1e}")
-            for (name, error), c in zip(self.error.items(), self.coefficients)
-        ]
-        rows.append(("bifurcation", self.bifurcation))
-        rows += [(_order(o), f"{a:.8g}") for o, a in self.amplitudes.items() if a is not None]
-        rows.append(("normalised by", self.model.normalization))
-        rows += [("note", text) for text in self.small_divisors + self.notes]
-        return rows
-
     def _repr_latex_(self) -> str:
         def term(n: int, c: float) -> str:
             power = "A" if n == 0 else rf"A^{{{2 * n + 1}}}"
-            return f"{_latex(complex(c))} {power}"
+            return f"{_latex(complex(c), self._errors[n])} {power}"
 
         terms = " + ".join(term(n, c.real) for n, c in enumerate(self.coefficients))
         return rf"$$ \frac{{dA}}{{dt}} = {terms.replace('+ -', '- ')} $$"
-
-
-def _order(order: str) -> str:
-    return "A_e, Padé" if order == "pade" else f"A_e, order {order}"
 
 
 class Modes(Result):
@@ -322,23 +322,10 @@ class Amplitudes(Result):
                 return term["g"]
         raise KeyError((z, conj))
 
-    def _rows(self) -> list[tuple[str, str]]:
-        rows = []
-        for j, terms in enumerate(self.equations):
-            for term in terms:
-                g = term["g"]
-                value = f"{g.real if g.imag == 0 else g:.10g} ± {term['error']:.1e}"
-                rows.append((f"dz{j + 1}/dt: {_monomial(term)}", value))
-        for state in self.equilibria:
-            z = ", ".join(f"{v.real if v.imag == 0 else v:.6g}" for v in state["z"])
-            verdict = {True: "stable", False: "unstable", None: "varies in time"}[state["stable"]]
-            rows.append(("equilibrium", f"({z}) {verdict}; next order {state['next_order']:.1e}"))
-        return rows
-
     def _repr_latex_(self) -> str:
         lines = []
         for j, terms in enumerate(self.equations):
-            right = " + ".join(f"{_latex(term['g'])}\\, {_monomial(term, latex=True)}" for term in terms)
+            right = " + ".join(f"{_latex(term['g'], term['error'])}\\, {_monomial(term, latex=True)}" for term in terms)
             lines.append(rf"\dot z_{{{j + 1}}} &= {right.replace('+ -', '- ')}")
         joined = " \\\\ ".join(lines)
         return rf"$$ \begin{{aligned}} {joined} \end{{aligned}} $$"

@@ -8,6 +8,7 @@ use super::draw::picture;
 use super::{called, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::Result;
+use landau_solver::measured::{Decided, Measured};
 use landau_solver::problem::Problem;
 use landau_solver::series::Monomial;
 use landau_solver::spectrum::EigenPair;
@@ -74,10 +75,9 @@ pub(super) fn orders(shop: &Workshop, cases: &[Case], asked: &Orders) -> Result<
         let equation = |pairs: Vec<EigenPair>| {
             let expansion = Expansion::to(&problem, pairs, asked.highest - 1)?;
             let terms = expansion.last_coefficients().equations.remove(0);
-            let coefficients: Vec<_> = terms.iter().map(|term| term.g).collect();
+            let coefficients = terms.iter().map(|term| Measured::new(term.g, 0.0));
             Ok(AmplitudeEquation {
-                errors: vec![0.0; coefficients.len()],
-                coefficients,
+                coefficients: coefficients.collect(),
             })
         };
         Ok(along(&problem, &places, equation, &[1.0]))
@@ -94,8 +94,9 @@ pub(super) fn orders(shop: &Workshop, cases: &[Case], asked: &Orders) -> Result<
         outcome.failures.extend(nothing_in(&case.label, equations));
         let first = table.rows.len();
         for (k, equation) in places.iter().zip(equations) {
-            let value = |of: &dyn Fn(&AmplitudeEquation) -> Option<f64>| {
-                equation.as_ref().ok().and_then(of).unwrap_or(f64::NAN)
+            let value = |of: &dyn Fn(&AmplitudeEquation) -> Decided| {
+                let answer = equation.as_ref().ok().and_then(|e| of(e).ok());
+                answer.map_or(f64::NAN, |amplitude| amplitude.value)
             };
             let mut row = vec![(*index + 1) as f64, *k];
             row.extend(orders.iter().map(|&order| value(&|e| e.equilibrium(order))));

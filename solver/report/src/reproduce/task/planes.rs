@@ -11,6 +11,7 @@ use crate::figure::{Panel, Part, Style, View, pattern_pair};
 use crate::library::expression;
 use landau_solver::error::{Error, Result};
 use landau_solver::model::Expression;
+use landau_solver::study::accuracy::Converged;
 use landau_solver::study::{self, Setup};
 use landau_solver::weakly::{Pattern, PlaneField, Selection, Window, pattern as expand};
 use nalgebra::{Matrix2, Vector2};
@@ -28,16 +29,15 @@ fn at_equilibrium(
     expressions: &[Expression],
 ) -> Result<Pattern> {
     let base = setup.base(None)?;
-    let point = setup.point(&base, k, Selection::Leading)?;
-    let missing = || Error::computation("there is no equilibrium amplitude at cubic order");
-    let amplitude = point.amplitude().ok_or_else(missing)?;
+    let converged = Converged::new(setup, &base, k, Selection::Leading)?;
+    let amplitude = converged.amplitude().map_err(Error::computation)?.value;
     let [columns, rows] = points;
     let window = Window {
         columns,
         rows,
         wavelengths,
     };
-    expand(&point, amplitude, window, expressions)
+    expand(&converged.point, amplitude, window, expressions)
 }
 
 fn quantity<'p>(found: &'p Pattern, name: &str) -> Result<&'p PlaneField> {
