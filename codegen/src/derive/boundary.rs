@@ -165,15 +165,9 @@ fn substitute<V: Copy + Ord>(
 }
 
 /// The boundary form as X-jet → combination of Y-jets, before any condition is used.
-///
-/// Terms with ∂t and a y-derivative have no place here (the conditions would depend on the
-/// eigenvalue); `Err` names the first.
-pub fn boundary_form(graph: &mut Graph, terms: &[DirectTerm]) -> Result<BoundaryForm, DirectTerm> {
+pub fn boundary_form(graph: &mut Graph, terms: &[DirectTerm]) -> BoundaryForm {
     let mut form = BoundaryForm::new();
     for term in terms.iter().filter(|t| t.jet.y > 0) {
-        if term.jet.t > 0 {
-            return Err(*term);
-        }
         for l in 0..term.jet.y {
             let x_jet = Jet {
                 y: term.jet.y - 1 - l,
@@ -203,7 +197,7 @@ pub fn boundary_form(graph: &mut Graph, terms: &[DirectTerm]) -> Result<Boundary
             }
         }
     }
-    Ok(form)
+    form
 }
 
 /// What must vanish for the boundary form to vanish at one end: one combination of Y-jets for each

@@ -39,6 +39,8 @@ pub struct Case {
     pub adjoint: Result<Vec<AdjointCondition>, String>,
     /// What closes k = 0.
     pub closures: Vec<CaseClosure>,
+    /// Positions in the block `mean` of the conserved integrals among them.
+    pub conserved: Vec<usize>,
 }
 
 pub(super) fn derive(
@@ -85,33 +87,22 @@ pub(super) fn derive(
     let base_conditions = base_conditions(deriver, &problem, &written, &written_base, mistakes)?;
     let base_checks = base_checks(deriver, &problem, &written, &written_base);
     let rules = base_rules(deriver.graph, &base_conditions);
-    let walls = match walls(deriver, &problem, &conditions, &rules) {
-        Ok(walls) => walls,
-        Err(reason) => {
-            let adjoint = Err(reason);
-            return Some(Case {
-                choices,
-                conditions,
-                base_conditions,
-                base_checks,
-                adjoint,
-                closures: Vec::new(),
-            });
-        }
-    };
     let problem = CaseProblem {
         walls: &conditions,
         ..problem
     };
-    let adjoint = adjoint_conditions(deriver, &problem, &walls, &rules, conditions.len());
-    let closures = closure::derive(deriver, &problem, &walls, &rules, mistakes);
+    let adjoint = walls(deriver, &problem, &conditions, &rules).and_then(|walls| {
+        adjoint_conditions(deriver, &problem, &walls, &rules, conditions.len())
+    });
+    let closures = closure::derive(deriver, &problem, &rules, mistakes);
     Some(Case {
         choices,
         conditions,
         base_conditions,
         base_checks,
         adjoint,
-        closures,
+        closures: closures.list,
+        conserved: closures.conserved,
     })
 }
 
@@ -287,35 +278,19 @@ fn describe_demand(
 
 /// A declared conserved integral must be conserved in some case.
 pub(super) fn check_conserved(deriver: &Deriver, cases: &[Case], mistakes: &mut Vec<Diagnostic>) {
-    let declared: Vec<_> = deriver
-        .model
-        .mean
-        .iter()
-        .filter_map(|closure| match closure {
-            Closure::Conserved { location, .. } => Some(location),
-            _ => None,
-        })
-        .collect();
-    let conserved = |case: &Case| {
-        case.closures
-            .iter()
-            .filter(|c| {
-                matches!(
-                    c,
-                    CaseClosure::Conserved { .. } | CaseClosure::Claimed { .. }
+    for (index, closure) in deriver.model.mean.iter().enumerate() {
+        let Closure::Conserved { location, .. } = closure else {
+            continue;
+        };
+        if !cases.iter().any(|case| case.conserved.contains(&index)) {
+            mistakes.push(
+                Diagnostic::new(
+                    location.clone(),
+                    "this integral is not conserved",
+                    "an integral that the balances and the walls keep constant",
                 )
-            })
-            .count()
-    };
-    let most = cases.iter().map(conserved).max().unwrap_or(0);
-    if let (Some(location), true) = (declared.last(), most < declared.len()) {
-        mistakes.push(
-            Diagnostic::new(
-                (*location).clone(),
-                "this integral is not conserved",
-                "an integral that the balances and the walls keep constant",
-            )
-            .hint("its density must change by a flux that vanishes at both ends"),
-        );
+                .hint("its density must change by a flux that vanishes at both ends"),
+            );
+        }
     }
 }

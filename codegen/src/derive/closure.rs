@@ -1,37 +1,35 @@
 //! What closes the problem at k = 0: conserved integrals, gauges, unknown numbers.
 //!
-//! An integral is conserved if some ℓ(y) with M0†ℓ = (its density) obeys L†ℓ = 0 at k = 0 and makes
-//! the boundary form vanish: then d/dt ∫ density = 0. The tool finds ℓ, it does not believe. Balances without
+//! An integral is conserved to first order if some ℓ(y) with M0†ℓ = (its linear density) obeys L†ℓ = 0 at k = 0 and
+//! makes the boundary form vanish: then d/dt ∫ density = 0. The tool finds ℓ, it does not believe. Balances without
 //! mass (continuity) leave components of ℓ open; where zero does not do for them, the claim is handed on, and
-//! the collocated problem decides.
+//! the collocated problem decides. Beyond first order the multiplier decides, which has to vanish.
 
-use super::boundary::{Simplifier, at_zero_wavenumber, demands};
+use super::density::Density;
 use super::linear::DirectTerm;
-use super::wall::{BaseRules, CaseProblem, Walls, at_end};
+use super::mean::{MeanWalls, carried, conserved, mean_walls, multiplier};
+use super::wall::{BaseRules, CaseProblem};
 use super::{Case, Deriver};
 use crate::diagnostic::Diagnostic;
 use crate::form::Form;
-use crate::graph::{
-    BalanceId, FieldId, Graph, Id, Jet, LinearSystem, Node, Rational, Table, Variable,
-};
+use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Node, Rational, Table};
 use crate::model::{Balance, Closure};
-use landau_contract::Id as _;
 use num_traits::One;
 
-/// A bordering of the problem at k = 0. Densities are Σ weight(y) · jets.
+/// A bordering of the problem at k = 0. Integrals keep the value that they have in the base state.
 #[derive(Clone, Debug)]
 pub enum CaseClosure {
-    /// ∫ density = 0; the multiplier enters the balances with the weights of `column`.
+    /// ∫ density is kept; the multiplier enters the balances with the weights of `column`.
     Conserved {
-        /// Jets and weights of the integral.
-        density: Vec<(Jet, Id)>,
+        /// What is integrated.
+        density: Density,
         /// Balances that the multiplier enters, with weights.
         column: Vec<(BalanceId, Id)>,
     },
-    /// The same, claimed by the spec: to be recognised in the collocated problem, or dropped.
+    /// The same, claimed by the spec: to be recognised in the collocated problem.
     Claimed {
-        /// Jets and weights of the integral.
-        density: Vec<(Jet, Id)>,
+        /// What is integrated.
+        density: Density,
         /// Balances that the multiplier enters, with weights.
         column: Vec<(BalanceId, Id)>,
     },
@@ -50,90 +48,160 @@ pub enum CaseClosure {
         /// Balances that the multiplier enters, with weights.
         column: Vec<(BalanceId, Id)>,
     },
-    /// The number `field` is unknown: ∫ density = 0.
+    /// The number `field` is unknown: ∫ density is kept.
     Unknown {
         /// Which field.
         field: FieldId,
-        /// Jets and weights of the integral.
-        density: Vec<(Jet, Id)>,
+        /// What is integrated.
+        density: Density,
     },
 }
 
 impl CaseClosure {
-    fn is_about(&self, other: &[(Jet, Id)]) -> bool {
+    /// What it integrates; nothing for a gauge, which integrates its field.
+    pub fn density(&self) -> Option<&Density> {
         match self {
-            CaseClosure::Conserved { density, .. } | CaseClosure::Claimed { density, .. } => {
-                density == other
-            }
-            _ => false,
+            CaseClosure::Conserved { density, .. }
+            | CaseClosure::Claimed { density, .. }
+            | CaseClosure::Unknown { density, .. } => Some(density),
+            CaseClosure::Gauge { .. } | CaseClosure::Drift { .. } => None,
         }
+    }
+
+    /// Whether it says of a conserved integral what `density` says, to first order.
+    fn is_about(&self, density: &Density) -> bool {
+        !matches!(self, CaseClosure::Unknown { .. })
+            && self.density().is_some_and(|d| d.linear == density.linear)
     }
 }
 
 /// The closures of one case.
+pub(super) struct Closures {
+    pub list: Vec<CaseClosure>,
+    /// Positions in the block `mean` of the conserved integrals among them.
+    pub conserved: Vec<usize>,
+    /// How many, the first of the list, are integrals of the base state that nothing declares.
+    candidates: usize,
+}
+
+/// The closures of one case. They need no adjoint boundary conditions: at k = 0 each is closed by itself.
 pub(super) fn derive(
     deriver: &mut Deriver,
     problem: &CaseProblem,
-    walls: &Walls,
     rules: &BaseRules,
     mistakes: &mut Vec<Diagnostic>,
-) -> Vec<CaseClosure> {
+) -> Closures {
     let model = deriver.model;
-    let mut closures: Vec<CaseClosure> = Vec::new();
+    let walls = mean_walls(deriver, problem, rules);
+    let mut closures = Closures {
+        list: Vec::new(),
+        conserved: Vec::new(),
+        candidates: 0,
+    };
     // An integral that fixes the base is a candidate for a conserved one.
     let candidates = model
         .base
         .integrals
         .iter()
-        .map(|i| (i.integrand, &i.location, false));
-    let declared = model.mean.iter().filter_map(|closure| match closure {
+        .map(|i| (i.integrand, &i.location, None));
+    let declared = model.mean.iter().enumerate();
+    let declared = declared.filter_map(|(index, closure)| match closure {
         Closure::Conserved {
             integrand,
             location,
-        } => Some((*integrand, location, true)),
+        } => Some((*integrand, location, Some(index))),
         _ => None,
     });
-    for (integrand, location, declared) in candidates.chain(declared) {
-        let Some(form) = deriver.expand(integrand, location, mistakes) else {
-            continue;
-        };
-        let density = density(&form);
-        let column = multiplier(deriver, problem.linear, &density);
-        // An integral of the base that is declared as conserved too is one closure.
-        if closures.iter().any(|c| c.is_about(&density)) {
-            continue;
-        }
-        let proved = column.filter(|c| conserved(deriver, problem, walls, rules, c, &closures));
-        if let Some(column) = proved {
-            closures.push(CaseClosure::Conserved { density, column });
-        } else if declared && has_massless(problem.linear, &model.balances) {
-            let column = carried(deriver, problem.linear, &density);
-            closures.push(CaseClosure::Claimed { density, column });
+    for (integrand, location, index) in candidates.chain(declared) {
+        if let Some(density) = deriver.density(integrand, location, mistakes) {
+            closures.conserve(deriver, problem, &walls, density, index);
         }
     }
     for closure in &model.mean {
         match closure {
             Closure::Conserved { .. } => {}
-            Closure::Gauge { field, location } => {
-                match gauge(deriver, problem, walls, rules, *field) {
-                    Ok(closure) => closures.push(closure),
-                    Err((message, expected)) => {
-                        mistakes.push(Diagnostic::new(location.clone(), message, expected));
-                    }
+            Closure::Gauge { field, location } => match gauge(deriver, problem, &walls, *field) {
+                Ok(closure) => closures.list.push(closure),
+                Err((message, expected)) => {
+                    mistakes.push(Diagnostic::new(location.clone(), message, expected));
                 }
-            }
+            },
             Closure::Unknown { field, integral } => {
-                let expanded = deriver.expand(integral.integrand, &integral.location, mistakes);
-                if let Some(form) = expanded {
-                    closures.push(CaseClosure::Unknown {
+                let place = &integral.location;
+                let density = deriver.density(integral.integrand, place, mistakes);
+                match density {
+                    Some(density) if density.linear.is_empty() => {
+                        let name = &model.fields[*field].name;
+                        let message = format!(
+                            "the condition of `{name}` has no linear part at the base state: to first order it says nothing"
+                        );
+                        let expected = "an integrand whose linear part has a mean";
+                        mistakes.push(Diagnostic::new(place.clone(), message, expected));
+                    }
+                    Some(density) => closures.list.push(CaseClosure::Unknown {
                         field: *field,
-                        density: density(&form),
-                    });
+                        density,
+                    }),
+                    None => {}
                 }
             }
         }
     }
     closures
+}
+
+impl Closures {
+    /// Takes in an integral if it is conserved, or if it stands in the block `mean` (at `declared`) and no proof can
+    /// decide.
+    fn conserve(
+        &mut self,
+        deriver: &mut Deriver,
+        problem: &CaseProblem,
+        walls: &MeanWalls,
+        density: Density,
+        declared: Option<usize>,
+    ) {
+        let same = self.list.iter().position(|c| c.is_about(&density));
+        if let Some(position) = same {
+            self.unite(position, density, declared);
+            return;
+        }
+        if declared.is_none() && density.is_nonlinear {
+            return;
+        }
+        let column = multiplier(deriver, problem.linear, &density.linear);
+        let proved = column.filter(|column| {
+            walls.carries(deriver, problem, column, &density.linear)
+                && conserved(deriver, problem, walls, column, &self.list)
+        });
+        if let Some(column) = proved {
+            self.list.push(CaseClosure::Conserved { density, column });
+            self.conserved.extend(declared);
+            self.candidates += usize::from(declared.is_none());
+        } else if let Some(index) = declared
+            && is_undecided(problem.linear, &deriver.model.balances)
+        {
+            let column = carried(deriver, problem.linear, &density.linear);
+            if !column.is_empty() {
+                self.list.push(CaseClosure::Claimed { density, column });
+                self.conserved.push(index);
+            }
+        }
+    }
+
+    /// Makes one closure of two that agree to first order: an integral of the base that is declared as conserved too
+    /// keeps what is declared. Two that are declared have to agree.
+    fn unite(&mut self, position: usize, density: Density, declared: Option<usize>) {
+        let is_candidate = position < self.candidates;
+        if let CaseClosure::Conserved { density: own, .. }
+        | CaseClosure::Claimed { density: own, .. } = &mut self.list[position]
+            && let Some(index) = declared
+            && (is_candidate || own.integrand == density.integrand)
+        {
+            *own = density;
+            self.conserved.push(index);
+        }
+    }
 }
 
 /// A claim that is proved for other choices of the switches does not hold where it is not.
@@ -152,35 +220,18 @@ pub(super) fn drop_refuted(cases: &mut [Case]) {
     }
 }
 
-/// Whether some balance holds no time derivative.
-pub(super) fn has_massless(linear: &[DirectTerm], balances: &Table<BalanceId, Balance>) -> bool {
-    balances
-        .ids()
-        .any(|row| !linear.iter().any(|t| t.row == row && t.jet.t > 0))
-}
-
-/// The density as the mass matrix carries it into the balances.
-fn carried(
-    deriver: &mut Deriver,
-    linear: &[DirectTerm],
-    density: &[(Jet, Id)],
-) -> Vec<(BalanceId, Id)> {
-    let mut column = Vec::new();
-    for (jet, weight) in density {
-        let time = Jet { t: 1, ..*jet };
-        for term in linear.iter().filter(|t| t.jet == time) {
-            column.push((term.row, deriver.graph.mul(term.coefficient, *weight)));
-        }
-    }
-    column
+/// Whether a proof may fail for an integral that is conserved: where some balance holds no time derivative, or one
+/// under ∂y, ℓ is not what the mass matrix alone says.
+fn is_undecided(linear: &[DirectTerm], balances: &Table<BalanceId, Balance>) -> bool {
+    let massless = |row| !linear.iter().any(|t| t.row == row && t.jet.t > 0);
+    balances.ids().any(massless) || linear.iter().any(|t| t.jet.t > 0 && t.jet.y > 0)
 }
 
 /// The closure of a field of which only derivatives matter, or why it is none: message and expectation.
 fn gauge(
     deriver: &mut Deriver,
     problem: &CaseProblem,
-    walls: &Walls,
-    rules: &BaseRules,
+    walls: &MeanWalls,
     field: FieldId,
 ) -> Result<CaseClosure, (String, &'static str)> {
     let model = deriver.model;
@@ -227,7 +278,8 @@ fn gauge(
     for row in paired.into_iter().chain(others) {
         for weight in null_candidates(deriver, problem, row) {
             let column = vec![(row, weight)];
-            if conserved(deriver, problem, walls, rules, &column, &[]) {
+            let is_null = walls.carries(deriver, problem, &column, &[]);
+            if is_null && conserved(deriver, problem, walls, &column, &[]) {
                 return Ok(CaseClosure::Gauge { field, column });
             }
         }
@@ -275,147 +327,4 @@ fn null_candidates(deriver: &mut Deriver, problem: &CaseProblem, row: BalanceId)
         }
     }
     candidates
-}
-
-/// The linear part at k = 0.
-fn density(form: &Form) -> Vec<(Jet, Id)> {
-    let linear = form.degree(1);
-    linear
-        .terms
-        .iter()
-        .map(|(m, &c)| (m[0], c))
-        .filter(|(j, _)| j.is_base())
-        .collect()
-}
-
-/// ℓ with M0†ℓ = density, by Gaussian elimination on the mass matrix.
-fn multiplier(
-    deriver: &mut Deriver,
-    linear: &[DirectTerm],
-    density: &[(Jet, Id)],
-) -> Option<Vec<(BalanceId, Id)>> {
-    let graph = &mut *deriver.graph;
-    if density.is_empty() || density.iter().any(|(j, _)| j.y > 0) {
-        return None;
-    }
-    let mut fields: Vec<FieldId> = linear
-        .iter()
-        .filter(|t| t.jet.t == 1)
-        .map(|t| t.jet.of)
-        .chain(density.iter().map(|(jet, _)| jet.of))
-        .collect();
-    fields.sort_unstable();
-    fields.dedup();
-    // One equation for each field: Σ_i m_ij ℓ_i = w_j.
-    let mut system = LinearSystem::new(graph, deriver.model.balances.len());
-    for field in fields {
-        let mass = linear.iter().filter(|t| t.jet.of == field && t.jet.t == 1);
-        let plain = mass.filter(|t| t.jet.x == 0 && t.jet.absx == 0 && t.jet.y == 0);
-        let coefficients = plain.map(|t| (t.row.index(), t.coefficient)).collect();
-        let weight = density.iter().find(|(jet, _)| jet.of == field);
-        system.equation(graph, coefficients, weight.map(|(_, weight)| *weight));
-    }
-    let solution = system.solve(graph)?.into_iter();
-    Some(
-        solution
-            .filter(|(_, weight)| !graph.vanishes(*weight))
-            .map(|(row, weight)| (BalanceId::at(row), weight))
-            .collect(),
-    )
-}
-
-/// Whether L†ℓ = 0 and the boundary form vanishes, at k = 0; or L†ℓ is a multiple of the density of
-/// an integral already known to be conserved (a Jordan block: ∫u changes by ∫v, which stays zero).
-fn conserved(
-    deriver: &mut Deriver,
-    problem: &CaseProblem,
-    walls: &Walls,
-    rules: &BaseRules,
-    column: &[(BalanceId, Id)],
-    known: &[CaseClosure],
-) -> bool {
-    let mut image: Table<FieldId, Id> = Table::default();
-    for field in deriver.model.profiles() {
-        let mut total = deriver.graph.zero();
-        for term in problem
-            .adjoint
-            .iter()
-            .filter(|t| t.row == field && t.jet.is_base())
-        {
-            let Some((_, weight)) = column.iter().find(|(row, _)| *row == term.jet.of) else {
-                continue;
-            };
-            let derivative = along_base(deriver.graph, *weight, term.jet.y);
-            let product = deriver.graph.mul(term.coefficient, derivative);
-            total = deriver.graph.add(total, product);
-        }
-        image.push(total);
-    }
-    let null = image.iter().all(|&id| deriver.vanishes_opened(id));
-    if !null
-        && !known
-            .iter()
-            .any(|closure| is_multiple(deriver.graph, &image, closure))
-    {
-        return false;
-    }
-    for (end, direct) in &walls.reduced {
-        let place = deriver.place(*end);
-        let mut simplify = |graph: &mut Graph, id| at_end(graph, place, *end, rules, id);
-        let demanded = demands(
-            deriver.graph,
-            &walls.form,
-            direct,
-            &mut Simplifier {
-                at_end: &mut simplify,
-            },
-        );
-        for combination in demanded.values() {
-            let mut parts = Vec::new();
-            for (jet, id) in at_zero_wavenumber(combination) {
-                let Some((_, weight)) = column.iter().find(|(row, _)| *row == jet.of) else {
-                    continue;
-                };
-                let derivative = along_base(deriver.graph, *weight, jet.y);
-                parts.push((deriver.graph.mul(id, derivative), Rational::one()));
-            }
-            let total = deriver.graph.sum(parts);
-            let total = at_end(deriver.graph, place, *end, rules, total);
-            if !deriver.vanishes_opened(total) {
-                return false;
-            }
-        }
-    }
-    true
-}
-
-/// Whether Σ image_f q_f is a constant times the density of a conserved integral.
-fn is_multiple(graph: &mut Graph, image: &Table<FieldId, Id>, closure: &CaseClosure) -> bool {
-    let CaseClosure::Conserved { density, .. } = closure else {
-        return false;
-    };
-    let Some((first, weight)) = density.first() else {
-        return false;
-    };
-    let factor = graph.divide_terms(image[first.of], *weight);
-    let slope = graph.differentiate(factor, Variable::AlongBase);
-    if !graph.vanishes(slope) {
-        return false;
-    }
-    image.ids().all(|field| {
-        let own = density.iter().find(|(jet, _)| jet.of == field);
-        let expected = match own {
-            Some((_, weight)) => graph.mul(factor, *weight),
-            None => graph.zero(),
-        };
-        let rest = graph.sub(image[field], expected);
-        graph.vanishes(rest)
-    })
-}
-
-fn along_base(graph: &mut Graph, mut id: Id, order: u8) -> Id {
-    for _ in 0..order {
-        id = graph.differentiate(id, Variable::AlongBase);
-    }
-    id
 }

@@ -8,8 +8,10 @@ mod boundary;
 mod case;
 mod check;
 mod closure;
+mod density;
 mod expand;
 mod linear;
+mod mean;
 mod offsets;
 mod open;
 mod pairing;
@@ -23,6 +25,7 @@ pub use base_wall::BaseCheck;
 pub use boundary::{Combination, Symbol};
 pub use case::{AdjointCondition, Case};
 pub use closure::CaseClosure;
+pub use density::Density;
 pub use linear::{AdjointTerm, DirectTerm, Term};
 pub use offsets::Offsets;
 pub use open::{Dependence, Opener, carry_out, dependence};
@@ -202,11 +205,12 @@ impl<'a> Deriver<'a> {
         }
         closure::drop_refuted(&mut cases);
         case::check_conserved(&self, &cases, mistakes);
-        let walls: Vec<&Form> = cases
-            .iter()
-            .flat_map(|c| c.conditions.iter().map(|w| &w.form))
-            .collect();
-        let parity = parity::parity(&balances, &walls, self.uniform.len());
+        let integrals = cases.iter().flat_map(|c| &c.closures);
+        let integrals = integrals.filter_map(CaseClosure::density);
+        let integrals: Vec<Form> = integrals.map(Density::averaged).collect();
+        let walls = cases.iter().flat_map(|c| &c.conditions);
+        let conditions = walls.map(|wall| &wall.form).chain(&integrals).collect::<Vec<_>>();
+        let parity = parity::parity(&balances, &conditions, self.uniform.len());
         let outputs: Vec<Form> = model
             .outputs
             .iter()

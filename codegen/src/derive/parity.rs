@@ -19,11 +19,11 @@ pub struct Parity {
 
 /// The parity of a model, or `None` where it has no such symmetry.
 ///
-/// `forms` are the balances, `walls` the boundary conditions (each with a sign of its own).
-pub fn parity(forms: &[Form], walls: &[&Form], fields: usize) -> Option<Parity> {
-    let unknowns = fields + forms.len() + walls.len();
+/// `forms` are the balances, `conditions` those of the walls and on integrals (each with a sign of its own).
+pub fn parity(forms: &[Form], conditions: &[&Form], fields: usize) -> Option<Parity> {
+    let unknowns = fields + forms.len() + conditions.len();
     let mut system: Vec<Vec<bool>> = Vec::new();
-    for (row, form) in forms.iter().chain(walls.iter().copied()).enumerate() {
+    for (row, form) in forms.iter().chain(conditions.iter().copied()).enumerate() {
         for monomial in form.terms.keys().filter(|m| !m.is_empty()) {
             let mut equation = vec![false; unknowns + 1];
             equation[fields + row] = true;

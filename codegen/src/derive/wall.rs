@@ -138,10 +138,13 @@ pub(super) fn walls(
     conditions: &[WallCondition],
     rules: &BaseRules,
 ) -> Result<Walls, String> {
-    let form = boundary_form(deriver.graph, problem.linear).map_err(|term| {
+    // The conditions would depend on the eigenvalue.
+    let under = |term: &&DirectTerm| term.jet.t > 0 && term.jet.y > 0;
+    if let Some(term) = problem.linear.iter().find(under) {
         let balance = &deriver.model.balances[term.row].name;
-        format!("the balance `{balance}` holds a time derivative under a cross-stream derivative: the adjoint boundary conditions would depend on the eigenvalue")
-    })?;
+        return Err(format!("the balance `{balance}` holds a time derivative under a cross-stream derivative: the adjoint boundary conditions would depend on the eigenvalue"));
+    }
+    let form = boundary_form(deriver.graph, problem.linear);
     let mut reduced = Vec::new();
     for end in End::BOTH {
         let place = deriver.place(end);

@@ -186,6 +186,10 @@ fn residual_name(id: ResidualId) -> (Ident, TokenStream) {
             format_ident!("RESIDUAL_BASE_CHECKS_{}", case.index()),
             case_pattern("BaseChecks", case),
         ),
+        ResidualId::Integrals(case) => (
+            format_ident!("RESIDUAL_INTEGRALS_{}", case.index()),
+            case_pattern("Integrals", case),
+        ),
     }
 }
 

@@ -300,37 +300,45 @@ impl<'a> Writer<'a> {
     }
 
     fn closure(&self, closure: &CaseClosure) -> Line {
-        let integral = |density: &[(Jet, Id)]| {
-            let terms = density
-                .iter()
-                .map(|(jet, weight)| self.scaled(*weight, vec![self.jet(*jet)]));
-            let model = &self.derivation.model;
-            let variable = match model.interval {
-                Some(_) => model.coordinate(),
-                None => &model.periodic,
-            };
-            integral(Formula::sum(terms), variable)
+        let field = match closure {
+            CaseClosure::Gauge { field, .. } | CaseClosure::Drift { field, .. } => {
+                &self.fields()[*field]
+            }
+            CaseClosure::Conserved { density, .. }
+            | CaseClosure::Claimed { density, .. }
+            | CaseClosure::Unknown { density, .. } => {
+                let terms = density.linear.iter();
+                let terms = terms.map(|(jet, weight)| self.scaled(*weight, vec![self.jet(*jet)]));
+                let integral = self.mean(Formula::sum(terms));
+                return self.vanishes(self.closure_label(closure), integral);
+            }
         };
-        match closure {
-            CaseClosure::Conserved { density, .. } => {
-                self.vanishes(Label::Name("conserved".into()), integral(density))
+        let drift = match closure {
+            CaseClosure::Drift { .. } => ", which may drift",
+            _ => "",
+        };
+        Line::Words(format!("gauge: the constant of {field}{drift}"))
+    }
+
+    fn closure_label(&self, closure: &CaseClosure) -> Label {
+        Label::Name(match closure {
+            CaseClosure::Conserved { .. } => "conserved".to_owned(),
+            CaseClosure::Claimed { .. } => "conserved, as claimed".to_owned(),
+            CaseClosure::Gauge { field, .. } | CaseClosure::Drift { field, .. } => {
+                format!("gauge {}", self.fields()[*field])
             }
-            CaseClosure::Claimed { density, .. } => self.vanishes(
-                Label::Name("conserved, as claimed".into()),
-                integral(density),
-            ),
-            CaseClosure::Gauge { field, .. } => {
-                Line::Words(format!("gauge: the constant of {}", self.fields()[*field]))
-            }
-            CaseClosure::Drift { field, .. } => Line::Words(format!(
-                "gauge: the constant of {}, which may drift",
-                self.fields()[*field]
-            )),
-            CaseClosure::Unknown { field, density } => {
-                let name = Label::Name(format!("unknown {}", self.fields()[*field]));
-                self.vanishes(name, integral(density))
-            }
-        }
+            CaseClosure::Unknown { field, .. } => format!("unknown {}", self.fields()[*field]),
+        })
+    }
+
+    /// The integral of a closure; without a cross-stream coordinate over the periodic one.
+    fn mean(&self, density: Formula) -> Formula {
+        let model = &self.derivation.model;
+        let variable = match model.interval {
+            Some(_) => model.coordinate(),
+            None => &model.periodic,
+        };
+        integral(density, variable)
     }
 
     fn parity(&self) -> String {
@@ -402,6 +410,22 @@ impl<'a> Writer<'a> {
         for (row, form) in operators.nonlinear[degree - 2].pairs() {
             let name = Label::Name(model.balances[row].name.clone());
             lines.push(Line::Formula(name, self.row(form, operators.divisors[row])));
+        }
+        let is_nonlinear = |closure: &CaseClosure| {
+            let form = closure.density().map(|density| density.form.degree(degree));
+            form.is_some_and(|form| !form.terms.is_empty())
+        };
+        let mut cases = operators.cases.iter().flat_map(|case| &case.closures);
+        if cases.any(is_nonlinear) {
+            lines.push(Line::Heading(format!("N{degree} of the integral conditions")));
+            lines.extend(self.by_case(|case| {
+                let closures = case.closures.iter().filter(|closure| is_nonlinear(closure));
+                let lines = closures.filter_map(|closure| {
+                    let form = self.form(&closure.density()?.form.degree(degree));
+                    Some(Line::Formula(self.closure_label(closure), self.mean(form)))
+                });
+                lines.collect()
+            }));
         }
         lines
     }

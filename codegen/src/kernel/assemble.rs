@@ -314,10 +314,10 @@ impl Assembler<'_> {
             let mean = |field: FieldId| vec![(Jet::value(field), one)];
             let (kind, field, density, column) = match closure.clone() {
                 CaseClosure::Conserved { density, column } => {
-                    (ClosureKind::Conserved, None, density, column)
+                    (ClosureKind::Conserved, None, density.linear, column)
                 }
                 CaseClosure::Claimed { density, column } => {
-                    (ClosureKind::Claimed, None, density, column)
+                    (ClosureKind::Claimed, None, density.linear, column)
                 }
                 CaseClosure::Gauge { field, column } => {
                     (ClosureKind::Gauge, Some(field), mean(field), column)
@@ -326,7 +326,7 @@ impl Assembler<'_> {
                     (ClosureKind::Drift, Some(field), mean(field), column)
                 }
                 CaseClosure::Unknown { field, density } => {
-                    (ClosureKind::Unknown, Some(field), density, Vec::new())
+                    (ClosureKind::Unknown, Some(field), density.linear, Vec::new())
                 }
             };
             coefficients.push(layout::ClosureWeights {

@@ -3,7 +3,7 @@
 use super::Lowering;
 use super::assemble::Assembler;
 use super::polarise::{form_tables, polarise};
-use crate::derive::base_value;
+use crate::derive::{CaseClosure, base_value};
 use crate::graph::{Graph, Id, Node};
 use landau_contract::*;
 use std::collections::{BTreeSet, HashMap};
@@ -109,8 +109,32 @@ impl Assembler<'_> {
                 opened.push(self.opener.at_state(self.graph, check.residual));
             }
             residuals.push((ResidualId::BaseChecks(id), opened));
+            if let Some(densities) = self.densities(id) {
+                residuals.push((ResidualId::Integrals(id), densities));
+            }
         }
         residuals
+    }
+
+    /// The densities of a case's closures, laws opened; nothing where all are linear in the perturbation, whose
+    /// weights say everything.
+    fn densities(&mut self, case: CaseId) -> Option<Vec<Id>> {
+        let closures = &self.operators.cases[case].closures;
+        let mut densities = closures.iter().filter_map(CaseClosure::density);
+        if !densities.any(|density| density.is_nonlinear) {
+            return None;
+        }
+        let integrands = closures.iter().map(|closure| match closure {
+            CaseClosure::Gauge { field, .. } | CaseClosure::Drift { field, .. } => {
+                self.graph.jet(Jet::value(*field))
+            }
+            CaseClosure::Conserved { density, .. }
+            | CaseClosure::Claimed { density, .. }
+            | CaseClosure::Unknown { density, .. } => {
+                self.opener.at_state(self.graph, density.integrand)
+            }
+        });
+        Some(integrands.collect())
     }
 
     fn forms(&mut self) -> Vec<Table<BalanceId, Option<Kernel>>> {

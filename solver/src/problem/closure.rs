@@ -1,14 +1,15 @@
 //! Bordering of the problems at k = 0.
 //!
-//! [L c; r 0]: the row r closes the problem (∫ density = 0), the column c carries its multiplier into the
-//! balances. The adjoint problem is bordered by the same two, exchanged: ∫ c·Y = 0, and the density in the
-//! rows of the fields.
+//! [L c; r d]: the row r closes the problem (the linear part of ∫ density), the column c carries its multiplier into
+//! the balances, the corner d holds the unknown numbers of the density. The adjoint problem is bordered by the same,
+//! exchanged: ∫ c·Y = 0, and the density in the rows of the fields.
 
+use super::basis::Turn;
 use crate::base::BaseState;
 use crate::error::{Error, Result};
 use crate::model::layout::{ClosureWeights, read_closure, read_terms};
 use crate::model::{
-    BalanceId, ClosureInfo, ClosureKind, FieldId, Id, Jet, KernelId, Table, evaluate,
+    BalanceId, C64, ClosureInfo, ClosureKind, FieldId, Id, Jet, KernelId, Table, evaluate,
 };
 use crate::space::{Derivative, Layout, Place, Space};
 use std::ops::Range;
@@ -26,6 +27,10 @@ pub struct Border {
     pub field: Option<FieldId>,
     /// Coefficients of the unknowns.
     pub row: Vec<f64>,
+    /// Unknown numbers in the density, each with ∫ of its weight: entries of the corner.
+    pub numbers: Vec<(FieldId, f64)>,
+    /// Whether the density is odd in the mirror x → −x.
+    pub is_odd: bool,
     /// Entries in the collocated equations, brought to the size of these: `unit` times the weights.
     pub column: Vec<f64>,
     /// The multiplier is `unit` times the unknown that goes with the column.
@@ -33,6 +38,21 @@ pub struct Border {
 }
 
 impl Border {
+    /// The entry of the corner in this row and in the column of another border.
+    pub fn corner(&self, other: &Border) -> f64 {
+        if other.kind != ClosureKind::Unknown {
+            return 0.0;
+        }
+        let own = self.numbers.iter();
+        let own = own.filter(|(field, _)| Some(*field) == other.field);
+        own.map(|(_, weight)| weight * other.unit).sum()
+    }
+
+    /// The factor by which ∫ density enters the solver's basis.
+    pub fn factor(&self) -> C64 {
+        (-Turn::of(self.is_odd)).factor()
+    }
+
     /// Brings the column to the size of the equations that it enters, `sizes` being theirs.
     pub fn balance(&mut self, layout: &Layout<BalanceId, FieldId>, sizes: &Table<BalanceId, f64>) {
         let touched = layout.rows.iter().zip(sizes.iter()).filter(|(block, _)| {
@@ -59,16 +79,19 @@ pub fn direct(base: &BaseState, space: &Space, layout: &Layout<BalanceId, FieldI
     let closures = Closures { base, space };
     let infos = closures.infos().iter().enumerate();
     let border = |(index, info): (usize, &ClosureInfo)| {
-        let row = closures.integral(layout, &info.density, |place| {
-            closures.at(index, place).density
-        });
+        let density = |place| closures.at(index, place).density;
         let column = match info.kind {
             ClosureKind::Unknown => closures.unknown_column(layout, info.field),
             _ => closures.column(layout, &info.column, |place| {
                 closures.at(index, place).column
             }),
         };
-        closures.border(index, info, row, column)
+        Border {
+            row: closures.integral(layout, &info.density, density),
+            numbers: closures.numbers(layout, &info.density, density),
+            column,
+            ..closures.border(index, info)
+        }
     };
     infos.map(border).collect()
 }
@@ -111,7 +134,11 @@ pub fn adjoint(
                 closures.at(index, place).column
             }),
         };
-        Ok(closures.border(index, info, row, column))
+        Ok(Border {
+            row,
+            column,
+            ..closures.border(index, info)
+        })
     };
     infos.map(border).collect()
 }
@@ -121,15 +148,21 @@ impl Closures<'_> {
         &self.base.structure().cases[self.base.case].closures
     }
 
-    /// The border of a closure before it is balanced against the equations.
-    fn border(&self, index: usize, info: &ClosureInfo, row: Vec<f64>, column: Vec<f64>) -> Border {
+    /// The border of a closure without its entries, before it is balanced against the equations.
+    fn border(&self, index: usize, info: &ClosureInfo) -> Border {
+        let parity = self.base.structure().parity.as_ref();
+        let first = info.density.first();
         Border {
             kind: info.kind,
             closure: index,
             name: self.name(info),
             field: info.field,
-            row,
-            column,
+            row: Vec::new(),
+            numbers: Vec::new(),
+            is_odd: parity
+                .zip(first)
+                .is_some_and(|(parity, jet)| parity.fields[jet.of]),
+            column: Vec::new(),
             unit: 1.0,
         }
     }
@@ -185,6 +218,25 @@ impl Closures<'_> {
             }
         }
         row
+    }
+
+    /// ∫ weight dy of the numbers among the jets of a density.
+    fn numbers(
+        &self,
+        layout: &Layout<BalanceId, FieldId>,
+        jets: &[Jet],
+        weights: impl Fn(Place) -> Vec<f64>,
+    ) -> Vec<(FieldId, f64)> {
+        let longest = layout.columns.iter().map(|b| b.len).max().unwrap_or(1);
+        let nodes = self.space.quadrature(2 * longest + 1).nodes;
+        let numbers = jets.iter().enumerate();
+        let numbers = numbers.filter(|(_, jet)| layout.columns.find(jet.of).is_none());
+        let integral = |(position, jet): (usize, &Jet)| {
+            let parts = nodes.iter();
+            let parts = parts.map(|&(place, measure)| measure * weights(place)[position]);
+            (jet.of, parts.sum())
+        };
+        numbers.map(integral).collect()
     }
 
     /// Weights at the points of the rows that they belong to.

@@ -324,7 +324,8 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
     }
 }
 
-/// A pencil with borders that have no mass.
+/// The pencil of L and M0 with borders that have no mass: a multiplier, or an unknown number, stands in it with the
+/// other sign than beside σ M0 − L.
 pub(super) fn with_borders<T: Scalar>(
     (operator, mass): (Mat<T>, Mat<T>),
     borders: &[Border],
@@ -338,16 +339,27 @@ pub(super) fn with_borders<T: Scalar>(
             T::zero_impl()
         }
     });
-    (bordered_by(operator, borders), mass)
+    (bordered_by(operator, borders, |row, of| -row.corner(of)), mass)
 }
 
-/// [A c; r 0]
-pub(super) fn bordered_by<T: Scalar>(matrix: Mat<T>, borders: &[Border]) -> Mat<T> {
+/// [A c; r d]: `corner` gives d by the border of the row and that of the column.
+pub(super) fn bordered_by<T: Scalar>(
+    matrix: Mat<T>,
+    borders: &[Border],
+    corner: impl Fn(&Border, &Border) -> f64,
+) -> Mat<T> {
+    let n = matrix.nrows();
     let real = |value: f64| T::from_complex(C64::new(value, 0.0));
-    let borders = borders.iter().map(|border| {
+    let vectors = borders.iter().map(|border| {
         let column = border.column.iter().map(|&v| real(v)).collect();
         let row = border.row.iter().map(|&v| real(v)).collect();
         (column, row)
     });
-    bordered(&matrix, &borders.collect::<Vec<_>>())
+    let mut result = bordered(&matrix, &vectors.collect::<Vec<_>>());
+    for (i, row) in borders.iter().enumerate() {
+        for (j, of) in borders.iter().enumerate() {
+            result[(n + i, n + j)] = real(corner(row, of));
+        }
+    }
+    result
 }

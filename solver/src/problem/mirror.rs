@@ -22,8 +22,7 @@ impl Problem {
     pub fn even_part(&self) -> Option<EvenPart> {
         let parity = self.structure().parity.as_ref()?;
         let layout = &self.direct.layout;
-        let unknowns = positions(&parity.fields, &layout.columns, false);
-        let mut columns = unknowns.clone();
+        let mut columns = positions(&parity.fields, &layout.columns, false);
         let mut rows = positions(&parity.rows, &layout.rows, false);
         for (index, wall) in self.direct.walls.iter().enumerate() {
             if !self.direct.wall_turn(wall).is_odd() {
@@ -31,8 +30,8 @@ impl Problem {
             }
         }
         for (index, border) in self.borders.iter().enumerate() {
-            // The integral of an odd field says nothing about the even ones.
-            if unknowns.iter().any(|&c| border.row[c] != 0.0) {
+            // An odd density says nothing about the even fields.
+            if !border.is_odd {
                 rows.push(layout.size + index);
                 columns.push(layout.size + index);
             }

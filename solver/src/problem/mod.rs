@@ -202,7 +202,7 @@ impl Problem {
     pub fn shifted<T: Scalar>(&self, k: f64, shift: C64) -> Mat<T> {
         let matrix = self.direct.matrix(k, Combination::shifted(shift));
         if k == 0.0 {
-            bordered_by(matrix, &self.borders)
+            bordered_by(matrix, &self.borders, Border::corner)
         } else {
             matrix
         }
@@ -221,7 +221,16 @@ impl Problem {
         let adjoint = self.adjoint()?;
         let kept: Vec<usize> = self.borders.iter().map(|b| b.closure).collect();
         let borders = closure::adjoint(&self.base, &adjoint.space, &adjoint.layout, &kept)?;
-        Ok(with_borders(adjoint.pencil(0.0), &borders))
+        let mut pencil = with_borders(adjoint.pencil(0.0), &borders);
+        // The corner of the direct problem, transposed, in the units of these borders.
+        let n = adjoint.layout.size;
+        for (j, of) in self.borders.iter().enumerate() {
+            for (i, row) in self.borders.iter().enumerate() {
+                let entry = of.corner(row) / row.unit;
+                pencil.0[(n + i, n + j)] = T::from_complex(C64::new(-entry, 0.0));
+            }
+        }
+        Ok(pencil)
     }
 
     /// Whether a mean is conserved: an envelope then has a second equation.

@@ -4,7 +4,7 @@
 //! force that is a gradient makes a pressure and no flow. Left as noise, such fields would make a c2 of noise, for
 //! which no resolution is enough.
 
-use super::{Blocks, Problem};
+use super::{Blocks, Border, Problem};
 use crate::model::{C64, FieldId, Table};
 use crate::numerics::dense::Scalar;
 use crate::numerics::{Applied, Noise};
@@ -19,7 +19,7 @@ fn noise(resolution: Option<usize>) -> f64 {
     f64::EPSILON * resolution.map_or(LEAST, |m| LEAST.max((m as f64).powi(3)))
 }
 
-/// Terms of the rows, balances and then walls, from which fields are told to be there.
+/// Terms of the rows, balances, then walls, then closures, from which fields are told to be there.
 pub struct Known {
     /// Fields that are there for certain.
     pub fields: Vec<FieldId>,
@@ -33,13 +33,29 @@ impl Problem {
     pub fn clear_absent(&self, k: f64, shift: C64, values: &mut [C64], known: Known) {
         let columns = &self.direct.layout.columns;
         let largest = columns.map(|block| largest(block.of(values)));
-        let shares = self.direct.shares(k, shift, &largest);
+        let mut shares = self.direct.shares(k, shift, &largest);
+        if k == 0.0 {
+            shares.extend(self.closure_shares(&largest));
+        }
         let present = self.present(known, &shares);
         for (field, block) in columns.pairs() {
             if !present.contains(&field) {
                 values[block.range()].fill(C64::new(0.0, 0.0));
             }
         }
+    }
+
+    /// What a field of a given size adds at most to the row of each closure.
+    fn closure_shares(&self, largest: &Table<FieldId, f64>) -> Vec<Table<FieldId, f64>> {
+        let columns = &self.direct.layout.columns;
+        let share = |border: &Border| {
+            let sums = columns.pairs().map(|(field, block)| {
+                let weights = block.of(&border.row).iter().map(|r| r.abs());
+                largest[field] * weights.sum::<f64>()
+            });
+            sums.collect()
+        };
+        self.borders.iter().map(share).collect()
     }
 
     /// The field that an eigenvector has for certain: the one with the largest part of yᴴ M0 x, whatever the units.
@@ -91,18 +107,32 @@ impl Problem {
 
 impl Known {
     fn nothing(problem: &Problem) -> Self {
-        let rows = problem.direct.layout.rows.len() + problem.direct.walls.len();
+        let (rows, walls) = (&problem.direct.layout.rows, &problem.direct.walls);
+        let rows = rows.len() + walls.len() + problem.borders.len();
         Known {
             fields: Vec::new(),
             rows: vec![0.0; rows],
         }
     }
 
-    /// A forcing.
-    pub fn forcing(problem: &Problem, right: &[C64]) -> Self {
+    /// A forcing of the equations, and of the closures where these are forced.
+    pub fn forcing(problem: &Problem, right: &[C64], closures: &[C64]) -> Self {
         let mut known = Known::nothing(problem);
         known.add(problem, right, 1.0);
+        let first = known.rows.len() - problem.borders.len();
+        for (sum, value) in known.rows[first..].iter_mut().zip(closures) {
+            *sum += value.norm();
+        }
         known
+    }
+
+    /// A multiplier or unknown number of some size, with all that its column and the corner carry.
+    pub fn add_border(&mut self, problem: &Problem, border: &Border, size: f64) {
+        self.add(problem, &border.column, size);
+        let first = self.rows.len() - problem.borders.len();
+        for (sum, row) in self.rows[first..].iter_mut().zip(&problem.borders) {
+            *sum += row.corner(border).abs() * size;
+        }
     }
 
     /// A column of the equations, times a number of some size.

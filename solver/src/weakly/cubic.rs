@@ -3,15 +3,17 @@
 //! X' = A X e^{iθ} + c.c. + A² (X[0;2] + X[2;2] e^{2iθ} + c.c.) + …,  dA/dt = a0 A + a2 A³,  dθ/dt = b0 + b2 A²,
 //! P (3.13)–(3.16):
 //!
-//! [2 a0 M0 − L_0] X[0;2] = 2 N2(X, X̄)
+//! [2 a0 M0 − L_0] X[0;2] = 2 N2(X, X̄), the closures' rows ∫ D1 X[0;2] dy = −2 ∫ D2(X, X̄) dy
 //! [2 c0 M0 − L_2k] X[2;2] = N2(X, X)
 //! c2 = ⟨Y, 2 N2(X, X[0;2]) + 2 N2(X̄, X[2;2]) + 3 N3(X, X, X̄)⟩ / ⟨Y, M0 X⟩, P (3.22)
 
 use super::bifurcation::equilibrium;
+use super::integrals;
 use super::mode::{JetTable, Mode};
-use super::response::{Multiplier, Question, Response, arithmetic};
+use super::response::{Multiplier, Question, Response, RightSide, arithmetic};
+use super::scramble::{Weight, scrambled, turned};
 use crate::error::{Error, Result};
-use crate::model::{C64, Id, Jet};
+use crate::model::{C64, Jet};
 use crate::numerics::Applied;
 use crate::numerics::dense::dot;
 use crate::problem::{Problem, Turned};
@@ -21,9 +23,6 @@ use std::sync::Arc;
 
 /// Below this part of what its terms would sum to were they not to cancel, c2 is rounding.
 pub const CANCELLED_SUM: f64 = 1e-13;
-
-/// The factor of a jet.
-type Weight = fn(Jet) -> f64;
 
 /// Which mode is meant.
 #[derive(Clone, Copy, Debug)]
@@ -124,15 +123,18 @@ fn third_order(
     fundamental: &Mode,
     weight: Option<Weight>,
 ) -> Result<ThirdOrder> {
-    let respond = |q: f64, shift: C64, forcing: Turned| {
+    let arithmetic = arithmetic(problem, &[pair.c]);
+    let uncancelled = || Some(mean_forcing(problem, fundamental, Some(turned)));
+    let respond = |q: f64, shift: C64, forcing: RightSide| {
         let question = Question {
             q,
             shift,
             forcing,
-            arithmetic: arithmetic(problem, &[pair.c]),
+            arithmetic,
             order: 2,
             is_real: q == 0.0,
             borders: &[],
+            uncancelled: &uncancelled,
         };
         question
             .answer(problem)
@@ -140,9 +142,15 @@ fn third_order(
     };
     let x = Factor::new(problem, fundamental.clone(), weight);
     let conjugate = x.conjugate();
-    let forcing = product(problem, &[&x, &conjugate], 2.0);
+    let forcing = RightSide {
+        equations: mean_forcing(problem, fundamental, weight),
+        closures: integrals::second_order(problem, fundamental, arithmetic, weight),
+    };
     let mean = respond(0.0, C64::new(2.0 * pair.c.re, 0.0), forcing)?;
-    let forcing = product(problem, &[&x, &x], 1.0);
+    let forcing = RightSide {
+        equations: product(problem, &[&x, &x], 1.0),
+        closures: Vec::new(),
+    };
     let second = respond(2.0 * pair.k, 2.0 * pair.c, forcing)?;
     let x02 = Factor::new(problem, mean.mode.clone(), weight);
     let x22 = Factor::new(problem, second.mode.clone(), weight);
@@ -158,6 +166,12 @@ fn third_order(
         contributions: third.map(|forcing| dot(&pair.left, &forcing) / below),
         responses: [mean, second],
     })
+}
+
+/// 2 N2(X, X̄)
+fn mean_forcing(problem: &Problem, fundamental: &Mode, weight: Option<Weight>) -> Turned {
+    let x = Factor::new(problem, fundamental.clone(), weight);
+    product(problem, &[&x, &x.conjugate()], 2.0)
 }
 
 /// The eigenvector as the spec normalises it, with its rate c X.
@@ -229,20 +243,13 @@ impl LandauPoint {
     }
 }
 
-/// Factors between 1/2 and 3/2 that have nothing to do with each other.
-fn scrambled(jet: Jet) -> f64 {
-    let orders = [jet.x, jet.absx, jet.y, jet.t].map(usize::from);
-    let number = orders
-        .iter()
-        .fold(jet.of.index(), |sum, order| 5 * sum + order);
-    0.5 + (0.618_033_988_75 * (number + 1) as f64).fract()
-}
-
 /// A mode that takes part in products, with its jets at the points of all balances.
 struct Factor {
     mode: Mode,
     tables: Vec<(Points, JetTable)>,
     weight: Option<Weight>,
+    /// Whether it is the conjugate of a weighted mode.
+    is_conjugate: bool,
 }
 
 impl Factor {
@@ -260,13 +267,19 @@ impl Factor {
             tables: groups.map(|(points, _)| table(points)).collect(),
             mode,
             weight,
+            is_conjugate: false,
         }
     }
 
     /// One jet at one end.
     fn at_end(&self, problem: &Problem, jet: Jet, end: Points) -> C64 {
         let value = self.mode.jet(problem, jet, end)[0];
-        self.weight.map_or(value, |weight| value * weight(jet))
+        let weight = self.weight.map_or(C64::new(1.0, 0.0), |weight| weight(jet));
+        if self.is_conjugate {
+            value * weight.conj()
+        } else {
+            value * weight
+        }
     }
 
     fn conjugate(&self) -> Self {
@@ -275,6 +288,7 @@ impl Factor {
             mode: self.mode.conjugate(),
             tables: tables.map(|(at, t)| (*at, t.conjugate())).collect(),
             weight: self.weight,
+            is_conjugate: !self.is_conjugate,
         }
     }
 

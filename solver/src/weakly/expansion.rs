@@ -8,9 +8,10 @@
 //! and, where something oscillates, its frequency.
 
 use super::cubic::fundamental;
-use super::forcing::Forcing;
+use super::forcing::{Forcing, Preparation};
 use super::mode::Mode;
-use super::response::{Multiplier, Question, Response, arithmetic};
+use super::response::{Multiplier, Question, Response, RightSide, arithmetic};
+use super::scramble::turned;
 use super::system::{AmplitudeSystem, Term};
 use crate::error::{Error, Result};
 use crate::model::C64;
@@ -83,7 +84,7 @@ impl Expansion {
             arithmetic,
             monomials: Monomials::new(modes.len()),
             profiles: vec![modes.iter().map(|mode| mode.profile.clone()).collect()],
-            forcing: Forcing::new(problem, k, arithmetic)?,
+            forcing: Forcing::new(&Preparation::new(problem, k, arithmetic, None))?,
             responses: Vec::new(),
             modes,
         };
@@ -205,7 +206,7 @@ impl Expansion {
             for j in posed.resonant {
                 let mode = &self.modes[j];
                 let left = &mode.pair.left;
-                let g = dot(left, &right) / dot(left, &mode.column);
+                let g = dot(left, &right.equations) / dot(left, &mode.column);
                 let monomial = posed.alpha.clone();
                 self.system.equations[j].push(Term { monomial, g });
             }
@@ -244,7 +245,7 @@ impl Expansion {
         degree: usize,
         posed: &[Posed],
         wanted: &[usize],
-    ) -> Vec<(Posed, Turned)> {
+    ) -> Vec<(Posed, RightSide)> {
         self.forcing.begin(&self.monomials, degree, wanted);
         let known = |(index, posed): (usize, &Posed)| {
             let rate = self.known_rate(&posed.alpha)?;
@@ -271,7 +272,7 @@ impl Expansion {
         wanted.iter().map(right).collect()
     }
 
-    fn solve(&mut self, posed: &Posed, forcing: Turned) -> Result<Mode> {
+    fn solve(&mut self, posed: &Posed, forcing: RightSide) -> Result<Mode> {
         let alpha = &posed.alpha;
         let borders = posed.resonant.iter().map(|&j| {
             let mode = &self.modes[j];
@@ -286,6 +287,7 @@ impl Expansion {
             order: alpha.degree(),
             is_real: alpha.is_real(),
             borders: &borders,
+            uncancelled: &|| self.uncancelled(alpha),
         };
         let response = question
             .answer(&self.problem)
@@ -303,6 +305,29 @@ impl Expansion {
             .extend(response.multipliers.iter().cloned());
         self.responses.push((alpha.clone(), response));
         Ok(mode)
+    }
+
+    /// G of a monomial with weights on all jets that let nothing cancel, in the solver's basis; the known part of the
+    /// rates is left out.
+    fn uncancelled(&self, alpha: &Monomial) -> Option<Turned> {
+        let k = self.modes.first().map_or(0.0, |mode| mode.pair.k);
+        let prepare = Preparation::new(&self.problem, k, Arithmetic::Complex, Some(turned));
+        let mut forcing = Forcing::new(&prepare).ok()?;
+        let mut monomials = Monomials::new(self.modes.len());
+        for (degree, profiles) in (1..).zip(&self.profiles) {
+            monomials.extend();
+            let all: Vec<usize> = (0..profiles.len()).collect();
+            forcing.begin(&monomials, degree, &all);
+            let modes: Vec<Option<Mode>> = profiles.iter().cloned().map(Some).collect();
+            forcing.complete(&self.problem, &monomials, degree, &modes);
+        }
+        monomials.extend();
+        let index = monomials.place(alpha)?.index;
+        let degree = alpha.degree();
+        forcing.begin(&monomials, degree, &[index]);
+        let still = vec![None; monomials.of(degree).len()];
+        let found = forcing.outputs(&self.problem, &monomials, degree, &still);
+        Some(found.get(index)?.right().equations)
     }
 
     /// Σ X_γ d/dt of lower monomials γ that gives z^p z̄^s through the nonlinear terms of the amplitude equations.

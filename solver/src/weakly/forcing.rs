@@ -3,7 +3,10 @@
 //! Laws, divisions, roots and state-dependent masses need no case of their own. Of each balance
 //! M ∂t X − R the coefficient of z^p z̄^s, with X_ps itself left out, is minus G_ps.
 
+use super::integrals::Integrals;
 use super::mode::Mode;
+use super::response::RightSide;
+use super::scramble::Weight;
 use crate::error::{Error, Result};
 use crate::model::{C64, End, Id, Jet, Kernel, KernelId, ResidualId, evaluate};
 use crate::problem::{Problem, Turned};
@@ -12,18 +15,25 @@ use crate::space::Points;
 
 /// The residuals prepared, with all coefficients found so far.
 pub(super) struct Forcing {
-    groups: Vec<Group>,
-    jets: Vec<Jet>,
+    equations: Vec<Equations>,
+    integrals: Option<Integrals>,
 }
 
-/// Rows of the collocated problem that share their points.
-struct Group {
+/// A residual on one family of points.
+pub(super) struct Group {
     points: Points,
     program: Program,
     levels: Levels,
-    rows: Vec<Row>,
-    /// Jets that the program reads.
+    /// Jets that the program reads, by their position among those of the residual.
     read: Vec<usize>,
+    jets: Vec<Jet>,
+    weight: Option<Weight>,
+}
+
+/// Rows of the collocated problem that share their points.
+struct Equations {
+    group: Group,
+    rows: Vec<Row>,
 }
 
 /// Where one output goes, and what it is multiplied by at each point.
@@ -33,23 +43,17 @@ struct Row {
 }
 
 impl Forcing {
-    /// The residuals around the base state of a problem; `k` is the wavenumber that a spec may name.
+    /// The residuals around the base state of a problem.
     ///
     /// # Errors
     /// A model without residual.
-    pub fn new(problem: &Problem, k: f64, arithmetic: Arithmetic) -> Result<Self> {
-        let structure = problem.structure();
+    pub fn new(prepare: &Preparation) -> Result<Self> {
+        let problem = prepare.problem;
         let model = problem.model();
-        let jets = structure.residual_jets.clone();
         let missing = || Error::computation("the model has no unexpanded residual");
         let balances = model.residual(ResidualId::Balances).ok_or_else(missing)?;
-        let prepare = Preparation {
-            problem,
-            k,
-            odd: odd_jets(problem, &jets, arithmetic),
-        };
         let layout = &problem.direct.layout;
-        let mut groups: Vec<Group> = Vec::new();
+        let mut equations: Vec<Equations> = Vec::new();
         for (points, same) in layout.groups() {
             let states = prepare.states(points);
             let divisors = states
@@ -64,7 +68,10 @@ impl Forcing {
                     .collect(),
             });
             let outputs: Vec<usize> = same.iter().map(|row| row.index()).collect();
-            groups.push(prepare.group(balances, &outputs, states, points, rows.collect()));
+            equations.push(Equations {
+                rows: rows.collect(),
+                group: prepare.group(balances, &outputs, points),
+            });
         }
         let case = ResidualId::Conditions(problem.base.case);
         for end in End::BOTH {
@@ -81,19 +88,24 @@ impl Forcing {
                 offset: layout.walls + index,
                 factors: vec![problem.direct.wall_factor(&problem.direct.walls[index])],
             });
-            let points = Points::end(end);
-            let states = prepare.states(points);
-            groups.push(prepare.group(conditions, &walls, states, points, rows.collect()));
+            equations.push(Equations {
+                rows: rows.collect(),
+                group: prepare.group(conditions, &walls, Points::end(end)),
+            });
         }
-        Ok(Forcing { groups, jets })
+        Ok(Forcing {
+            equations,
+            integrals: Integrals::new(prepare),
+        })
     }
 
     /// Begins a degree, the next: `wanted` are the stored monomials that are asked for.
     pub fn begin(&mut self, monomials: &Monomials, degree: usize, wanted: &[usize]) {
-        for group in &mut self.groups {
-            group
-                .levels
-                .begin(&group.program, monomials, degree, wanted);
+        for Equations { group, .. } in &mut self.equations {
+            group.begin(monomials, degree, wanted);
+        }
+        if let Some(integrals) = &mut self.integrals {
+            integrals.begin(monomials, degree, wanted);
         }
     }
 
@@ -106,22 +118,25 @@ impl Forcing {
         degree: usize,
         known: &[Option<Mode>],
     ) -> Vec<PhysicalForcing> {
-        let size = problem.direct.layout.size;
-        let mut found = vec![PhysicalForcing::new(size); known.len()];
-        for group in &mut self.groups {
+        let mut found = vec![PhysicalForcing::new(problem); known.len()];
+        for Equations { group, rows } in &mut self.equations {
             let moving = |jet: Jet| jet.t > 0;
-            let table = group.table(problem, &self.jets, known, moving);
+            let table = group.table(problem, known, moving);
             let jets = |jet: usize, index: usize| table[index].get(jet)?.clone();
-            let outputs = group
-                .levels
-                .outputs(&group.program, monomials, degree, &jets);
-            for (row, values) in group.rows.iter().zip(outputs) {
+            let outputs = group.outputs(monomials, degree, &jets);
+            for (row, values) in rows.iter().zip(outputs) {
                 for (forcing, values) in found.iter_mut().zip(values) {
                     for (i, (value, factor)) in values.iter().zip(&row.factors).enumerate() {
                         forcing.values[row.offset + i] = *value;
                         forcing.factors[row.offset + i] = *factor;
                     }
                 }
+            }
+        }
+        if let Some(integrals) = &mut self.integrals {
+            let integrals = integrals.outputs(monomials, degree);
+            for (forcing, integrals) in found.iter_mut().zip(integrals) {
+                forcing.integrals = integrals;
             }
         }
         found
@@ -135,12 +150,11 @@ impl Forcing {
         degree: usize,
         modes: &[Option<Mode>],
     ) {
-        for group in &mut self.groups {
-            let table = group.table(problem, &self.jets, modes, |_| true);
-            let jets = |jet: usize, index: usize| table[index].get(jet)?.clone();
-            group
-                .levels
-                .complete(&group.program, monomials, degree, &jets);
+        for Equations { group, .. } in &mut self.equations {
+            group.complete(problem, monomials, degree, modes);
+        }
+        if let Some(integrals) = &mut self.integrals {
+            integrals.complete(problem, monomials, degree, modes);
         }
     }
 }
@@ -150,36 +164,69 @@ impl Forcing {
 pub(super) struct PhysicalForcing {
     values: Vec<C64>,
     factors: Vec<C64>,
+    /// ∫ F dy of each closure; none where all densities are linear.
+    integrals: Vec<C64>,
+    /// What brings them into the solver's basis, with the sign of a right-hand side.
+    closure_factors: Vec<C64>,
 }
 
 impl PhysicalForcing {
-    fn new(size: usize) -> Self {
+    fn new(problem: &Problem) -> Self {
+        let zero = vec![C64::new(0.0, 0.0); problem.direct.layout.size];
         PhysicalForcing {
-            values: vec![C64::new(0.0, 0.0); size],
-            factors: vec![C64::new(0.0, 0.0); size],
+            values: zero.clone(),
+            factors: zero,
+            integrals: Vec::new(),
+            closure_factors: problem.borders.iter().map(|b| -b.factor()).collect(),
         }
     }
 
-    /// G in the solver's basis.
-    pub fn right(&self) -> Turned {
-        let pairs = self.values.iter().zip(&self.factors);
-        Turned(pairs.map(|(v, f)| v * f).collect())
+    /// The right-hand side in the solver's basis.
+    pub fn right(&self) -> RightSide {
+        self.right_of(|value| value)
     }
 
-    /// G of the conjugate monomial.
-    pub fn conjugate_right(&self) -> Turned {
-        let pairs = self.values.iter().zip(&self.factors);
-        Turned(pairs.map(|(v, f)| v.conj() * f).collect())
+    /// That of the conjugate monomial.
+    pub fn conjugate_right(&self) -> RightSide {
+        self.right_of(|value| value.conj())
+    }
+
+    fn right_of(&self, value: impl Fn(C64) -> C64) -> RightSide {
+        let product = |(v, f): (&C64, &C64)| value(*v) * f;
+        let equations = self.values.iter().zip(&self.factors).map(product);
+        let closures = self.integrals.iter().zip(&self.closure_factors).map(product);
+        RightSide {
+            equations: Turned(equations.collect()),
+            closures: closures.collect(),
+        }
     }
 }
 
-struct Preparation<'a> {
-    problem: &'a Problem,
+/// What residuals are prepared from.
+pub(super) struct Preparation<'a> {
+    pub problem: &'a Problem,
+    /// The wavenumber that a spec may name.
     k: f64,
     odd: Option<Vec<bool>>,
+    weight: Option<Weight>,
 }
 
-impl Preparation<'_> {
+impl<'a> Preparation<'a> {
+    /// For numbers of some arithmetic, every jet times its weight where there are weights.
+    pub fn new(
+        problem: &'a Problem,
+        k: f64,
+        arithmetic: Arithmetic,
+        weight: Option<Weight>,
+    ) -> Self {
+        Preparation {
+            problem,
+            k,
+            odd: odd_jets(problem, &problem.structure().residual_jets, arithmetic),
+            weight,
+        }
+    }
+
     fn states(&self, points: Points) -> Vec<Vec<f64>> {
         let places = self.problem.space().places(points).into_iter();
         places
@@ -187,15 +234,10 @@ impl Preparation<'_> {
             .collect()
     }
 
-    fn group(
-        &self,
-        kernel: &Kernel,
-        outputs: &[usize],
-        states: Vec<Vec<f64>>,
-        points: Points,
-        rows: Vec<Row>,
-    ) -> Group {
+    /// Some outputs of a residual on a family of points.
+    pub fn group(&self, kernel: &Kernel, outputs: &[usize], points: Points) -> Group {
         let structure = self.problem.structure();
+        let states = self.states(points);
         let jets = |state: &Vec<f64>| -> Vec<f64> {
             let jets = structure.residual_jets.iter();
             jets.map(|jet| structure.base_jet(*jet, state)).collect()
@@ -207,7 +249,8 @@ impl Preparation<'_> {
             levels: Levels::new(&program, &states, &base),
             read: program.jets(),
             program,
-            rows,
+            jets: structure.residual_jets.clone(),
+            weight: self.weight,
         }
     }
 }
@@ -220,11 +263,36 @@ fn odd_jets(problem: &Problem, jets: &[Jet], arithmetic: Arithmetic) -> Option<V
 }
 
 impl Group {
+    pub fn begin(&mut self, monomials: &Monomials, degree: usize, wanted: &[usize]) {
+        self.levels.begin(&self.program, monomials, degree, wanted);
+    }
+
+    /// The outputs of the degree begun, `[output][monomial][point]`, with the given coefficients of the jets.
+    pub fn outputs(
+        &mut self,
+        monomials: &Monomials,
+        degree: usize,
+        jets: &dyn Fn(usize, usize) -> Option<Vec<C64>>,
+    ) -> Vec<Vec<Vec<C64>>> {
+        self.levels.outputs(&self.program, monomials, degree, jets)
+    }
+
+    pub fn complete(
+        &mut self,
+        problem: &Problem,
+        monomials: &Monomials,
+        degree: usize,
+        modes: &[Option<Mode>],
+    ) {
+        let table = self.table(problem, modes, |_| true);
+        let jets = |jet: usize, index: usize| table[index].get(jet)?.clone();
+        self.levels.complete(&self.program, monomials, degree, &jets);
+    }
+
     /// The chosen jets of each mode at the points, `[mode][jet][point]`; nothing for one that is zero.
     fn table(
         &self,
         problem: &Problem,
-        jets: &[Jet],
         modes: &[Option<Mode>],
         chosen: impl Fn(Jet) -> bool,
     ) -> Vec<Vec<Option<Vec<C64>>>> {
@@ -232,14 +300,18 @@ impl Group {
             .read
             .iter()
             .copied()
-            .filter(|&i| chosen(jets[i]))
+            .filter(|&i| chosen(self.jets[i]))
             .collect();
-        let wanted: Vec<Jet> = read.iter().map(|&index| jets[index]).collect();
+        let wanted: Vec<Jet> = read.iter().map(|&index| self.jets[index]).collect();
         let row = |mode: &Option<Mode>| {
             let Some(mode) = mode else { return Vec::new() };
-            let mut row = vec![None; jets.len()];
+            let mut row = vec![None; self.jets.len()];
             let columns = mode.columns(problem, &wanted, self.points);
-            for (&index, column) in read.iter().zip(columns) {
+            for (&index, mut column) in read.iter().zip(columns) {
+                if let Some(weight) = self.weight {
+                    let factor = weight(self.jets[index]);
+                    column.iter_mut().for_each(|value| *value *= factor);
+                }
                 row[index] = Some(column);
             }
             row

@@ -151,7 +151,7 @@ impl JetTable {
     }
 
     /// Multiplies each jet, by its position, by a factor of its own.
-    pub fn weigh(&mut self, factor: impl Fn(usize) -> f64) {
+    pub fn weigh(&mut self, factor: impl Fn(usize) -> C64) {
         for (position, value) in self.values.iter_mut().enumerate() {
             *value *= factor(position % self.jets);
         }

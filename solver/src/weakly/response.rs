@@ -4,8 +4,9 @@
 use super::mode::Mode;
 use crate::model::{C64, ClosureKind, FieldId};
 use crate::numerics::dense::{Scalar, bordered, norm, scalars};
-use crate::problem::{Known, Problem, Profile, Solver, Turned};
+use crate::problem::{Border, Known, Problem, Profile, Solver, Turned};
 use crate::series::Arithmetic;
+use crate::space::Block;
 
 /// The multiplier of a closure of a mean mode.
 #[derive(Clone, Debug)]
@@ -16,10 +17,23 @@ pub struct Multiplier {
     pub order: usize,
     /// The largest part of a balance that it makes up.
     pub size: f64,
-    /// Its size in the balances over that of the forcing.
+    /// Its size in the balances over that of the terms that it stands beside, before these cancel; for one that need
+    /// not vanish over that of the forcing.
     pub relative: f64,
     /// Whether it has to vanish.
     pub vanishes: bool,
+}
+
+/// The part of the terms beside it that a multiplier has to stay below where it has to vanish.
+pub const LEFT_OVER: f64 = 1e-6;
+
+/// Right-hand sides of one problem, in the solver's basis.
+#[derive(Clone, Debug)]
+pub struct RightSide {
+    /// Of the balances and the boundary conditions: G.
+    pub equations: Turned,
+    /// Of the closures at k = 0, one a border of the problem; empty where all densities are linear.
+    pub closures: Vec<C64>,
 }
 
 /// A linear problem with its forcing, in the solver's basis.
@@ -29,7 +43,7 @@ pub struct Question<'a> {
     /// σ
     pub shift: C64,
     /// G with the boundary data.
-    pub forcing: Turned,
+    pub forcing: RightSide,
     /// How the modes with amplitudes are kept.
     pub arithmetic: Arithmetic,
     /// Of which order in the amplitudes.
@@ -38,6 +52,8 @@ pub struct Question<'a> {
     pub is_real: bool,
     /// Column M0 φ and row M0ᴴ ψ of every mode whose amplitude equation takes part.
     pub borders: &'a [(Turned, Turned)],
+    /// G with weights that let nothing cancel: asked for where a multiplier looks large.
+    pub uncancelled: &'a dyn Fn() -> Option<Turned>,
 }
 
 /// The answer.
@@ -124,7 +140,10 @@ impl Question<'_> {
         let n = problem.direct.layout.size;
         let matrix = problem.shifted::<T>(self.q, self.shift);
         let closed = matrix.nrows();
-        let mut right: Vec<T> = scalars(&self.forcing);
+        let mut right: Vec<T> = scalars(&self.forcing.equations);
+        if closed > n {
+            right.extend(scalars::<T>(&self.forcing.closures));
+        }
         right.resize(closed + self.borders.len(), T::zero_impl());
         let even = self.mean_symmetry() == MeanSymmetry::Even;
         let solver = match problem.even_part().filter(|_| even) {
@@ -142,27 +161,21 @@ impl Question<'_> {
             }
         };
         let solution = solver.solve(&right)?;
-        let mut known = Known::forcing(problem, &self.forcing);
+        let RightSide {
+            equations,
+            closures,
+        } = &self.forcing;
+        let mut known = Known::forcing(problem, equations, closures);
         for ((column, _), value) in self.borders.iter().zip(&solution[closed..]) {
             known.add(problem, column, value.size());
         }
         let mut multipliers = Vec::new();
-        let size = norm(&self.forcing);
         let mut drift: Option<Profile> = None;
         let mut numbers: Vec<(FieldId, C64)> = Vec::new();
         for (border, value) in problem.borders.iter().zip(&solution[n..closed]) {
-            known.add(problem, &border.column, value.size());
-            let share = norm(&border.column) * value.size();
-            let relative = if share == 0.0 { 0.0 } else { share / size };
+            known.add_border(problem, border, value.size());
             if border.kind != ClosureKind::Unknown {
-                let largest = border.column.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
-                multipliers.push(Multiplier {
-                    closure: border.name.clone(),
-                    order: self.order,
-                    size: largest * value.size(),
-                    relative,
-                    vanishes: border.kind != ClosureKind::Drift,
-                });
+                multipliers.push(self.multiplier(problem, border, value.size(), &solution[..n]));
             }
             let Some(field) = border.field else { continue };
             let value = value.complex() * problem.direct.column_factor(field) * border.unit;
@@ -196,6 +209,70 @@ impl Question<'_> {
             solver: T::kept(solver),
         })
     }
+}
+
+impl Question<'_> {
+    /// The multiplier of a border, beside the terms of the solution `x`.
+    fn multiplier<T: Scalar>(
+        &self,
+        problem: &Problem,
+        border: &Border,
+        value: f64,
+        x: &[T],
+    ) -> Multiplier {
+        let largest = border.column.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+        let vanishes = border.kind != ClosureKind::Drift;
+        let forcing = &self.forcing.equations;
+        let relative = if value == 0.0 {
+            0.0
+        } else if vanishes {
+            let terms = self.terms(problem, x);
+            let beside = |forcing: &Turned| share(problem, border, value, forcing, &terms);
+            let plain = beside(forcing);
+            if plain <= LEFT_OVER {
+                plain
+            } else {
+                // Terms that cancel leave rounding: what they are before they do is what counts.
+                (self.uncancelled)().map_or(plain, |forcing| plain.min(beside(&forcing)))
+            }
+        } else {
+            norm(&border.column) * value / norm(forcing)
+        };
+        Multiplier {
+            closure: border.name.clone(),
+            order: self.order,
+            size: largest * value,
+            relative,
+            vanishes,
+        }
+    }
+
+    /// What the fields of the solution add at most to each balance of σ M0 − L.
+    fn terms<T: Scalar>(&self, problem: &Problem, x: &[T]) -> Vec<f64> {
+        let size = |block: &Block| block.of(x).iter().map(|v| v.size()).fold(0.0, f64::max);
+        let sizes = problem.direct.layout.columns.map(size);
+        let shares = problem.direct.shares(self.q, self.shift, &sizes);
+        shares.iter().map(|row| row.iter().sum()).collect()
+    }
+}
+
+/// The largest part of a balance that a multiplier makes up, relative to the forcing and the terms of that balance.
+fn share(
+    problem: &Problem,
+    border: &Border,
+    value: f64,
+    forcing: &Turned,
+    terms: &[f64],
+) -> f64 {
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let rows = problem.direct.layout.rows.iter().zip(terms);
+    let shares = rows.map(|(block, terms)| {
+        let own = value * largest(block.of(&border.column));
+        let forced = block.of(forcing).iter().map(|v| v.norm());
+        let beside = forced.fold(0.0, f64::max) + terms;
+        if own == 0.0 { 0.0 } else { own / beside }
+    });
+    shares.fold(0.0, f64::max)
 }
 
 impl Response {

@@ -1,0 +1,251 @@
+//! The problem at k = 0 by itself: null functions ℓ(y) of L† and what the two ends leave of them.
+
+use super::Deriver;
+use super::boundary::{
+    BoundaryForm, Combination, Reduced, Simplifier, at_zero_wavenumber, boundary_form, demands,
+    reduce, split,
+};
+use super::closure::CaseClosure;
+use super::linear::{AdjointTerm, DirectTerm};
+use super::wall::{BaseRules, CaseProblem, at_end};
+use crate::graph::{
+    BalanceId, FieldId, Graph, Id, Jet, LinearSystem, Rational, Table, Variable,
+};
+use crate::model::End;
+use landau_contract::Id as _;
+use num_traits::One;
+
+/// The density as the mass matrix carries it into the balances.
+pub(super) fn carried(
+    deriver: &mut Deriver,
+    linear: &[DirectTerm],
+    density: &[(Jet, Id)],
+) -> Vec<(BalanceId, Id)> {
+    let mut column = Vec::new();
+    for (jet, weight) in density {
+        let time = Jet { t: 1, ..*jet };
+        for term in linear.iter().filter(|t| t.jet == time) {
+            column.push((term.row, deriver.graph.mul(term.coefficient, *weight)));
+        }
+    }
+    column
+}
+
+/// ℓ with M0†ℓ = density, by Gaussian elimination on the mass matrix.
+pub(super) fn multiplier(
+    deriver: &mut Deriver,
+    linear: &[DirectTerm],
+    density: &[(Jet, Id)],
+) -> Option<Vec<(BalanceId, Id)>> {
+    let graph = &mut *deriver.graph;
+    if density.is_empty() || density.iter().any(|(j, _)| j.y > 0) {
+        return None;
+    }
+    let mut fields: Vec<FieldId> = linear
+        .iter()
+        .filter(|t| t.jet.t == 1)
+        .map(|t| t.jet.of)
+        .chain(density.iter().map(|(jet, _)| jet.of))
+        .collect();
+    fields.sort_unstable();
+    fields.dedup();
+    // One equation for each field: Σ_i m_ij ℓ_i = w_j.
+    let mut system = LinearSystem::new(graph, deriver.model.balances.len());
+    for field in fields {
+        let mass = linear.iter().filter(|t| t.jet.of == field && t.jet.t == 1);
+        let plain = mass.filter(|t| t.jet.x == 0 && t.jet.absx == 0 && t.jet.y == 0);
+        let coefficients = plain.map(|t| (t.row.index(), t.coefficient)).collect();
+        let weight = density.iter().find(|(jet, _)| jet.of == field);
+        system.equation(graph, coefficients, weight.map(|(_, weight)| *weight));
+    }
+    let solution = system.solve(graph)?.into_iter();
+    Some(
+        solution
+            .filter(|(_, weight)| !graph.vanishes(*weight))
+            .map(|(row, weight)| (BalanceId::at(row), weight))
+            .collect(),
+    )
+}
+
+/// Whether L†ℓ = 0 and the boundary form vanishes, at k = 0; or L†ℓ is a multiple of the density of
+/// an integral already known to be conserved (a Jordan block: ∫u changes by ∫v, which stays zero).
+pub(super) fn conserved(
+    deriver: &mut Deriver,
+    problem: &CaseProblem,
+    walls: &MeanWalls,
+    column: &[(BalanceId, Id)],
+    known: &[CaseClosure],
+) -> bool {
+    let image = image(deriver, problem.adjoint, column, 0);
+    let null = image.iter().all(|&id| deriver.vanishes_opened(id));
+    if !null
+        && !known
+            .iter()
+            .any(|closure| is_multiple(deriver.graph, &image, closure))
+    {
+        return false;
+    }
+    walls.vanish(deriver, &walls.operator, column)
+}
+
+/// The part of L†ℓ (`time` = 0) or M0†ℓ (`time` = 1) at k = 0, field by field.
+fn image(
+    deriver: &mut Deriver,
+    adjoint: &[AdjointTerm],
+    column: &[(BalanceId, Id)],
+    time: u8,
+) -> Table<FieldId, Id> {
+    let mut image: Table<FieldId, Id> = Table::default();
+    for field in deriver.model.profiles() {
+        let mut total = deriver.graph.zero();
+        let terms = adjoint.iter().filter(|t| t.row == field);
+        for term in terms.filter(|t| t.jet.t == time && Jet { t: 0, ..t.jet }.is_base()) {
+            let Some((_, weight)) = column.iter().find(|(row, _)| *row == term.jet.of) else {
+                continue;
+            };
+            let derivative = along_base(deriver.graph, *weight, term.jet.y);
+            let product = deriver.graph.mul(term.coefficient, derivative);
+            total = deriver.graph.add(total, product);
+        }
+        image.push(total);
+    }
+    image
+}
+
+/// What the two ends leave of the problem at k = 0, where conditions hold no ∂x.
+pub(super) struct MeanWalls {
+    /// The boundary form of L.
+    operator: BoundaryForm,
+    /// That of M0, which acts on ∂t X: the conditions hold for it as they do for X.
+    mass: BoundaryForm,
+    /// The conditions of each end, solved, and its coordinate.
+    ends: Vec<(End, Id, Reduced<FieldId>)>,
+    rules: BaseRules,
+}
+
+pub(super) fn mean_walls(deriver: &mut Deriver, problem: &CaseProblem, rules: &BaseRules) -> MeanWalls {
+    let mean = |time: u8| {
+        let terms = problem.linear.iter().filter(move |t| t.jet.t == time);
+        terms.map(|t| DirectTerm {
+            jet: Jet { t: 0, ..t.jet },
+            ..*t
+        })
+    };
+    let terms = |time| mean(time).filter(|t| t.jet.is_base()).collect::<Vec<_>>();
+    let operator = boundary_form(deriver.graph, &terms(0));
+    let mass = boundary_form(deriver.graph, &terms(1));
+    let mut ends = Vec::new();
+    for end in End::BOTH {
+        let place = deriver.place(end);
+        let rows = problem.walls.iter().filter(|c| c.end == end).map(|wall| {
+            let mut row = Combination::new();
+            for (monomial, &coefficient) in &wall.form.degree(1).terms {
+                let (jet, symbol) = split(monomial[0], coefficient);
+                if symbol.contains_key(&(0, 0)) {
+                    row.insert(jet, symbol);
+                }
+            }
+            row
+        });
+        let rows: Vec<_> = rows.collect();
+        let mut simplify = |graph: &mut Graph, id| at_end(graph, place, end, rules, id);
+        let mut simplifier = Simplifier {
+            at_end: &mut simplify,
+        };
+        // Every row has a jet without ∂x to be solved for.
+        if let Ok(reduced) = reduce(deriver.graph, rows, &mut simplifier) {
+            ends.push((end, place, reduced));
+        }
+    }
+    MeanWalls {
+        operator,
+        mass,
+        ends,
+        rules: rules.clone(),
+    }
+}
+
+impl MeanWalls {
+    /// Whether a boundary form vanishes for ℓ at both ends.
+    fn vanish(
+        &self,
+        deriver: &mut Deriver,
+        form: &BoundaryForm,
+        column: &[(BalanceId, Id)],
+    ) -> bool {
+        for (end, place, direct) in &self.ends {
+            let (end, place) = (*end, *place);
+            let mut simplify = |graph: &mut Graph, id| at_end(graph, place, end, &self.rules, id);
+            let mut simplifier = Simplifier {
+                at_end: &mut simplify,
+            };
+            let demanded = demands(deriver.graph, form, direct, &mut simplifier);
+            for combination in demanded.values() {
+                let mut parts = Vec::new();
+                for (jet, id) in at_zero_wavenumber(combination) {
+                    let Some((_, weight)) = column.iter().find(|(row, _)| *row == jet.of) else {
+                        continue;
+                    };
+                    let derivative = along_base(deriver.graph, *weight, jet.y);
+                    parts.push((deriver.graph.mul(id, derivative), Rational::one()));
+                }
+                let total = deriver.graph.sum(parts);
+                let total = at_end(deriver.graph, place, end, &self.rules, total);
+                if !deriver.vanishes_opened(total) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// Whether M0†ℓ is the density, nothing being left at the ends.
+    pub fn carries(
+        &self,
+        deriver: &mut Deriver,
+        problem: &CaseProblem,
+        column: &[(BalanceId, Id)],
+        density: &[(Jet, Id)],
+    ) -> bool {
+        let image = image(deriver, problem.adjoint, column, 1);
+        let matches = image.pairs().all(|(field, &total)| {
+            let own = density.iter().find(|(jet, _)| *jet == Jet::value(field));
+            let expected = own.map_or_else(|| deriver.graph.zero(), |(_, weight)| *weight);
+            let rest = deriver.graph.sub(total, expected);
+            deriver.vanishes_opened(rest)
+        });
+        matches && self.vanish(deriver, &self.mass, column)
+    }
+}
+
+/// Whether Σ image_f q_f is a constant times the density of a conserved integral.
+fn is_multiple(graph: &mut Graph, image: &Table<FieldId, Id>, closure: &CaseClosure) -> bool {
+    let CaseClosure::Conserved { density, .. } = closure else {
+        return false;
+    };
+    let density = &density.linear;
+    let Some((first, weight)) = density.first() else {
+        return false;
+    };
+    let factor = graph.divide_terms(image[first.of], *weight);
+    let slope = graph.differentiate(factor, Variable::AlongBase);
+    if !graph.vanishes(slope) {
+        return false;
+    }
+    image.ids().all(|field| {
+        let own = density.iter().find(|(jet, _)| jet.of == field);
+        let expected = match own {
+            Some((_, weight)) => graph.mul(factor, *weight),
+            None => graph.zero(),
+        };
+        let rest = graph.sub(image[field], expected);
+        graph.vanishes(rest)
+    })
+}
+
+fn along_base(graph: &mut Graph, mut id: Id, order: u8) -> Id {
+    for _ in 0..order {
+        id = graph.differentiate(id, Variable::AlongBase);
+    }
+    id
+}
