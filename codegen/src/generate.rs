@@ -1,6 +1,7 @@
 //! The pipeline on a screen.
 
 use crate::diagnostic::{Diagnostics, SourceFile};
+use crate::emit::text;
 use crate::sources::Sources;
 use crate::{derive, kernel, model};
 use landau_contract::TapeModel;
@@ -17,7 +18,10 @@ pub fn generate(
 ) -> Result<(derive::Derivation, kernel::ModelKernels), Diagnostics> {
     let model = model::resolve(sources)?;
     let mut derivation = derive::derive(model, ORDER)?;
-    let kernels = kernel::kernels(&mut derivation);
+    let mut kernels = kernel::kernels(&mut derivation);
+    let undeclared = derivation.operators.cases.ids();
+    let undeclared = undeclared.map(|case| (case, text::undeclared(&derivation, case)));
+    kernels.undeclared = undeclared.filter(|(_, words)| !words.is_empty()).collect();
     Ok((derivation, kernels))
 }
 

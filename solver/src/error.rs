@@ -115,6 +115,17 @@ pub enum Error {
         distance: Option<f64>,
     },
 
+    /// A multiplier that has to vanish does not: a mean is not kept beyond first order.
+    #[error("{}", not_kept(closure, *order, *relative))]
+    NotKept {
+        /// The closure, in words.
+        closure: String,
+        /// Degree in the amplitudes.
+        order: usize,
+        /// The multiplier's part of the terms beside it.
+        relative: f64,
+    },
+
     /// A quantity does not do what is asked of it in an interval.
     #[error("{0}")]
     NoCriticalPoint(String),
@@ -143,6 +154,23 @@ fn resonance(of: &str, q: f64, modes: &[f64], distance: Option<f64>) -> String {
         "the problem for {of} is {how}, a resonance with a mode at k = {q}: try a wavenumber beside this one, or give \
          that mode an amplitude of its own: `landau amplitudes` with {}",
         named.join(" ")
+    )
+}
+
+fn not_kept(closure: &str, order: usize, relative: f64) -> String {
+    let advice = match closure.strip_prefix("gauge ") {
+        Some(field) => format!(
+            "the constant of `{field}` is free to first order alone, and the balance that it stands for has a mean \
+             source; leave that gauge out of the block `mean`, or mend the balance"
+        ),
+        None => "the balances do not keep this integral beyond first order; name the density that they keep in the \
+                 block `mean`, its products included, such as `conserved integral(rho*u)` in place of \
+                 `conserved integral(u)`"
+            .to_owned(),
+    };
+    format!(
+        "the multiplier of `{closure}` does not vanish at order {order} in the amplitude, where it is {relative:.1e} of \
+         the terms beside it: {advice}"
     )
 }
 
@@ -207,6 +235,7 @@ impl Error {
             Error::Unresolved { .. } => "unresolved",
             Error::Resonance { .. } => "resonance",
             Error::OpenMean { .. } => "open_mean",
+            Error::NotKept { .. } => "not_kept",
             Error::NoCriticalPoint(_) => "no_critical_point",
             Error::Certificate(_) => "certificate",
             Error::Computation(_) => "computation",

@@ -86,6 +86,14 @@ pub fn quoted(text: &str) -> String {
     line
 }
 
+/// What to say of an integral that the balances keep and the spec does not declare.
+pub fn undeclared(integral: &str) -> String {
+    format!(
+        "note: the balances conserve {integral}, which the block `mean` does not name; a slow mean then couples to the \
+         pattern's envelope"
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::{short, with_error};

@@ -1,7 +1,7 @@
 //! Straight-line programs with common subexpressions shared, as data: what the Rust emitter prints, what the tape
 //! runs, and what the solver runs on numbers of its own, the same operations in the same order.
 
-use crate::ids::{BalanceId, Table};
+use crate::ids::{BalanceId, CaseId, Table};
 use crate::jet::Function;
 use crate::number::Number;
 use crate::structure::{KernelId, ResidualId, Structure};
@@ -173,4 +173,7 @@ pub struct ModelKernels {
     pub forms: Vec<Table<BalanceId, Option<Kernel>>>,
     /// The unexpanded residuals.
     pub residuals: Vec<(ResidualId, Kernel)>,
+    /// By case, integrals that its balances keep and the spec does not declare, in words; cases without any are left
+    /// out.
+    pub undeclared: Vec<(CaseId, Vec<String>)>,
 }

@@ -3,7 +3,7 @@
 //! Generated code and a model run from its tape implement the same object-safe trait; nothing below
 //! this module knows where the kernels come from, or which model they belong to.
 
-use crate::ids::BalanceId;
+use crate::ids::{BalanceId, CaseId};
 use crate::kernel::Kernel;
 use crate::layout::output_length;
 use crate::number::C64;
@@ -39,6 +39,11 @@ pub trait Model: Send + Sync {
     /// numbers of any kind: its inputs are the point state and the jets of [`Structure::residual_jets`], its outputs
     /// one value a balance or condition. Nothing where there are no conditions.
     fn residual(&self, residual: ResidualId) -> Option<&Kernel>;
+
+    /// Integrals that the balances of a case keep and the spec does not declare, as a spec would name them.
+    fn undeclared(&self, _case: CaseId) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// Runs a real kernel at one point into a new vector.

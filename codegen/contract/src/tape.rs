@@ -1,6 +1,6 @@
 //! A model run from its spec without a build: the kernels' operations, interpreted.
 
-use crate::ids::{BalanceId, Table};
+use crate::ids::{BalanceId, CaseId, Table};
 use crate::kernel::{Kernel, ModelKernels};
 use crate::model::Model;
 use crate::number::C64;
@@ -17,6 +17,7 @@ pub struct TapeModel {
     kernels: HashMap<KernelId, Kernel>,
     forms: Vec<Table<BalanceId, Option<Kernel>>>,
     residuals: HashMap<ResidualId, Kernel>,
+    undeclared: HashMap<CaseId, Vec<String>>,
 }
 
 impl TapeModel {
@@ -33,6 +34,7 @@ impl TapeModel {
             kernels,
             forms,
             residuals,
+            undeclared,
         } = kernels;
         TapeModel {
             structure,
@@ -42,6 +44,7 @@ impl TapeModel {
             kernels: kernels.into_iter().collect(),
             forms,
             residuals: residuals.into_iter().collect(),
+            undeclared: undeclared.into_iter().collect(),
         }
     }
 }
@@ -89,6 +92,10 @@ impl Model for TapeModel {
 
     fn residual(&self, residual: ResidualId) -> Option<&Kernel> {
         self.residuals.get(&residual)
+    }
+
+    fn undeclared(&self, case: CaseId) -> Vec<String> {
+        self.undeclared.get(&case).cloned().unwrap_or_default()
     }
 }
 

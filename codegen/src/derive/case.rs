@@ -4,6 +4,7 @@
 use super::base_wall::{BaseCheck, base_checks, base_conditions};
 use super::boundary::{Combination, Simplifier, as_condition, conjugate, demands, reduce};
 use super::closure::{self, CaseClosure};
+use super::invariant::Undeclared;
 use super::wall::{
     BaseCondition, BaseRules, CaseProblem, WallCondition, Walls, at_end, base_rules, walls,
 };
@@ -41,6 +42,8 @@ pub struct Case {
     pub closures: Vec<CaseClosure>,
     /// Positions in the block `mean` of the conserved integrals among them.
     pub conserved: Vec<usize>,
+    /// Integrals that the balances keep and the spec does not declare.
+    pub undeclared: Vec<Undeclared>,
 }
 
 pub(super) fn derive(
@@ -91,9 +94,8 @@ pub(super) fn derive(
         walls: &conditions,
         ..problem
     };
-    let adjoint = walls(deriver, &problem, &conditions, &rules).and_then(|walls| {
-        adjoint_conditions(deriver, &problem, &walls, &rules, conditions.len())
-    });
+    let adjoint = walls(deriver, &problem, &conditions, &rules)
+        .and_then(|walls| adjoint_conditions(deriver, &problem, &walls, &rules, conditions.len()));
     let closures = closure::derive(deriver, &problem, &rules, mistakes);
     Some(Case {
         choices,
@@ -103,6 +105,7 @@ pub(super) fn derive(
         adjoint,
         closures: closures.list,
         conserved: closures.conserved,
+        undeclared: closures.undeclared,
     })
 }
 

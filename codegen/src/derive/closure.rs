@@ -6,14 +6,15 @@
 //! the collocated problem decides. Beyond first order the multiplier decides, which has to vanish.
 
 use super::density::Density;
+use super::invariant::{Proof, Undeclared, end_rules};
 use super::linear::DirectTerm;
 use super::mean::{MeanWalls, carried, conserved, mean_walls, multiplier};
-use super::wall::{BaseRules, CaseProblem};
+use super::wall::{BaseRules, CaseProblem, reduced};
 use super::{Case, Deriver};
 use crate::diagnostic::Diagnostic;
 use crate::form::Form;
 use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Node, Rational, Table};
-use crate::model::{Balance, Closure};
+use crate::model::{Balance, Closure, End};
 use num_traits::One;
 
 /// A bordering of the problem at k = 0. Integrals keep the value that they have in the base state.
@@ -80,6 +81,8 @@ pub(super) struct Closures {
     pub list: Vec<CaseClosure>,
     /// Positions in the block `mean` of the conserved integrals among them.
     pub conserved: Vec<usize>,
+    /// Integrals that are kept and not declared.
+    pub undeclared: Vec<Undeclared>,
     /// How many, the first of the list, are integrals of the base state that nothing declares.
     candidates: usize,
 }
@@ -93,9 +96,21 @@ pub(super) fn derive(
 ) -> Closures {
     let model = deriver.model;
     let walls = mean_walls(deriver, problem, rules);
+    let solved = reduced(deriver, problem.walls, rules).ok();
+    let ends = End::BOTH.map(|end| {
+        let said = end_rules(problem, solved.as_ref(), end);
+        (end, deriver.place(end), said)
+    });
+    let proof = Proof {
+        problem,
+        walls: &walls,
+        rules,
+        ends: ends.into(),
+    };
     let mut closures = Closures {
         list: Vec::new(),
         conserved: Vec::new(),
+        undeclared: Vec::new(),
         candidates: 0,
     };
     // An integral that fixes the base is a candidate for a conserved one.
@@ -114,7 +129,7 @@ pub(super) fn derive(
     });
     for (integrand, location, index) in candidates.chain(declared) {
         if let Some(density) = deriver.density(integrand, location, mistakes) {
-            closures.conserve(deriver, problem, &walls, density, index);
+            closures.conserve(deriver, &proof, density, index);
         }
     }
     for closure in &model.mean {
@@ -147,6 +162,7 @@ pub(super) fn derive(
             }
         }
     }
+    closures.undeclared = proof.undeclared(deriver, &closures.list);
     closures
 }
 
@@ -156,11 +172,11 @@ impl Closures {
     fn conserve(
         &mut self,
         deriver: &mut Deriver,
-        problem: &CaseProblem,
-        walls: &MeanWalls,
+        proof: &Proof,
         density: Density,
         declared: Option<usize>,
     ) {
+        let (problem, walls) = (proof.problem, proof.walls);
         let same = self.list.iter().position(|c| c.is_about(&density));
         if let Some(position) = same {
             self.unite(position, density, declared);
@@ -175,6 +191,10 @@ impl Closures {
                 && conserved(deriver, problem, walls, column, &self.list)
         });
         if let Some(column) = proved {
+            // An integral of the base that only the linear balances keep is none to be kept.
+            if declared.is_none() && matches!(proof.kept(deriver, &column), Ok(None)) {
+                return;
+            }
             self.list.push(CaseClosure::Conserved { density, column });
             self.conserved.extend(declared);
             self.candidates += usize::from(declared.is_none());

@@ -8,9 +8,7 @@ use super::boundary::{
 use super::closure::CaseClosure;
 use super::linear::{AdjointTerm, DirectTerm};
 use super::wall::{BaseRules, CaseProblem, at_end};
-use crate::graph::{
-    BalanceId, FieldId, Graph, Id, Jet, LinearSystem, Rational, Table, Variable,
-};
+use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, LinearSystem, Rational, Table, Variable};
 use crate::model::End;
 use landau_contract::Id as _;
 use num_traits::One;
@@ -123,7 +121,11 @@ pub(super) struct MeanWalls {
     rules: BaseRules,
 }
 
-pub(super) fn mean_walls(deriver: &mut Deriver, problem: &CaseProblem, rules: &BaseRules) -> MeanWalls {
+pub(super) fn mean_walls(
+    deriver: &mut Deriver,
+    problem: &CaseProblem,
+    rules: &BaseRules,
+) -> MeanWalls {
     let mean = |time: u8| {
         let terms = problem.linear.iter().filter(move |t| t.jet.t == time);
         terms.map(|t| DirectTerm {
@@ -166,6 +168,37 @@ pub(super) fn mean_walls(deriver: &mut Deriver, problem: &CaseProblem, rules: &B
 }
 
 impl MeanWalls {
+    /// L†ℓ at k = 0, field by field.
+    pub fn image(
+        &self,
+        deriver: &mut Deriver,
+        problem: &CaseProblem,
+        column: &[(BalanceId, Id)],
+    ) -> Table<FieldId, Id> {
+        image(deriver, problem.adjoint, column, 0)
+    }
+
+    /// M0†ℓ at k = 0: jets with weights.
+    pub fn density(
+        &self,
+        deriver: &mut Deriver,
+        problem: &CaseProblem,
+        column: &[(BalanceId, Id)],
+    ) -> Vec<(Jet, Id)> {
+        let image = image(deriver, problem.adjoint, column, 1);
+        let weights = image.pairs().map(|(field, &id)| (Jet::value(field), id));
+        let weights: Vec<_> = weights.collect();
+        let present = weights.into_iter();
+        present
+            .filter(|(_, id)| !deriver.vanishes_opened(*id))
+            .collect()
+    }
+
+    /// Whether ℓ leaves nothing at the ends, of L and of M0.
+    pub fn vanish_for(&self, deriver: &mut Deriver, column: &[(BalanceId, Id)]) -> bool {
+        self.vanish(deriver, &self.operator, column) && self.vanish(deriver, &self.mass, column)
+    }
+
     /// Whether a boundary form vanishes for ℓ at both ends.
     fn vanish(
         &self,

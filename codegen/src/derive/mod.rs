@@ -10,6 +10,7 @@ mod check;
 mod closure;
 mod density;
 mod expand;
+mod invariant;
 mod linear;
 mod mean;
 mod offsets;
@@ -26,6 +27,7 @@ pub use boundary::{Combination, Symbol};
 pub use case::{AdjointCondition, Case};
 pub use closure::CaseClosure;
 pub use density::Density;
+pub use invariant::Undeclared;
 pub use linear::{AdjointTerm, DirectTerm, Term};
 pub use offsets::Offsets;
 pub use open::{Dependence, Opener, carry_out, dependence};
@@ -209,7 +211,10 @@ impl<'a> Deriver<'a> {
         let integrals = integrals.filter_map(CaseClosure::density);
         let integrals: Vec<Form> = integrals.map(Density::averaged).collect();
         let walls = cases.iter().flat_map(|c| &c.conditions);
-        let conditions = walls.map(|wall| &wall.form).chain(&integrals).collect::<Vec<_>>();
+        let conditions = walls
+            .map(|wall| &wall.form)
+            .chain(&integrals)
+            .collect::<Vec<_>>();
         let parity = parity::parity(&balances, &conditions, self.uniform.len());
         let outputs: Vec<Form> = model
             .outputs

@@ -142,9 +142,21 @@ pub(super) fn walls(
     let under = |term: &&DirectTerm| term.jet.t > 0 && term.jet.y > 0;
     if let Some(term) = problem.linear.iter().find(under) {
         let balance = &deriver.model.balances[term.row].name;
-        return Err(format!("the balance `{balance}` holds a time derivative under a cross-stream derivative: the adjoint boundary conditions would depend on the eigenvalue"));
+        return Err(format!(
+            "the balance `{balance}` holds a time derivative under a cross-stream derivative: the adjoint boundary conditions would depend on the eigenvalue"
+        ));
     }
     let form = boundary_form(deriver.graph, problem.linear);
+    let reduced = reduced(deriver, conditions, rules)?;
+    Ok(Walls { form, reduced })
+}
+
+/// The conditions of each end solved for derivatives without ∂x, or why they cannot be.
+pub(super) fn reduced(
+    deriver: &mut Deriver,
+    conditions: &[WallCondition],
+    rules: &BaseRules,
+) -> Result<Vec<(End, Reduced<FieldId>)>, String> {
     let mut reduced = Vec::new();
     for end in End::BOTH {
         let place = deriver.place(end);
@@ -166,5 +178,5 @@ pub(super) fn walls(
         })?;
         reduced.push((end, solved));
     }
-    Ok(Walls { form, reduced })
+    Ok(reduced)
 }

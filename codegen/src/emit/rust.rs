@@ -48,6 +48,7 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
         functions.extend(residual_program(&name, kernel));
         residuals.extend(quote!(s::ResidualId::#pattern => Some(&#name),));
     }
+    let undeclared = undeclared(&model.undeclared);
     let sources = derivation.model.sources.iter().map(|file| {
         let (path, text) = (&file.path, &file.text);
         quote!((#path, #text))
@@ -114,6 +115,8 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
                     _ => None,
                 }
             }
+
+            #undeclared
         }
 
         /// The spec and its law files, as they were when this module was generated.
@@ -126,6 +129,24 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
         #functions
     };
     pretty(code)
+}
+
+/// The method that names what is kept and not declared; nothing where nothing is.
+fn undeclared(cases: &[(CaseId, Vec<String>)]) -> Option<TokenStream> {
+    let arms = cases.iter().map(|(case, words)| {
+        let case = case.literal();
+        quote!(#case => vec![#(#words.to_string()),*],)
+    });
+    (!cases.is_empty()).then(|| {
+        quote! {
+            fn undeclared(&self, case: s::CaseId) -> Vec<String> {
+                match case {
+                    #(#arms)*
+                    _ => Vec::new(),
+                }
+            }
+        }
+    })
 }
 
 /// Formats tokens; the emitter only makes valid items.

@@ -325,9 +325,12 @@ impl Assembler<'_> {
                 CaseClosure::Drift { field, column } => {
                     (ClosureKind::Drift, Some(field), mean(field), column)
                 }
-                CaseClosure::Unknown { field, density } => {
-                    (ClosureKind::Unknown, Some(field), density.linear, Vec::new())
-                }
+                CaseClosure::Unknown { field, density } => (
+                    ClosureKind::Unknown,
+                    Some(field),
+                    density.linear,
+                    Vec::new(),
+                ),
             };
             coefficients.push(layout::ClosureWeights {
                 density: density.iter().map(|(_, id)| *id).collect(),

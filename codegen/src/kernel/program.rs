@@ -86,6 +86,7 @@ impl Assembler<'_> {
             kernels,
             forms,
             residuals,
+            undeclared: Vec::new(),
         }
     }
 

@@ -5,6 +5,7 @@
 
 use super::Problem;
 use super::linear::with_borders;
+use crate::error::{Error, Result};
 use crate::model::{C64, ClosureKind};
 use crate::numerics::dense::norm;
 use crate::pencil::Reduced;
@@ -15,12 +16,16 @@ const TOLERANCE: f64 = 1e-6;
 const SLOW: usize = 6;
 
 impl Problem {
-    /// Drops the claimed closures that the problem does not bear out.
-    pub(super) fn recognise_claims(&mut self) {
+    /// Recognises the claimed closures. Where switches change the walls, one that the problem does not bear out may
+    /// hold for other choices, and is dropped.
+    ///
+    /// # Errors
+    /// A claim that the problem does not bear out, whatever the switches.
+    pub(super) fn recognise_claims(&mut self) -> Result<()> {
         let is_claim = |position: &usize| self.borders[*position].kind == ClosureKind::Claimed;
         let claims: Vec<usize> = (0..self.borders.len()).filter(is_claim).collect();
         if claims.is_empty() {
-            return;
+            return Ok(());
         }
         let known = self
             .borders
@@ -29,9 +34,7 @@ impl Problem {
         let known: Vec<_> = known.cloned().collect();
         let slow = Reduced::<f64>::new(with_borders(self.direct.pencil(0.0), &known))
             .and_then(|pencil| pencil.eigenvectors());
-        let Ok((spectrum, mut modes)) = slow else {
-            return self.borders.retain(|b| b.kind != ClosureKind::Claimed);
-        };
+        let (spectrum, mut modes) = slow?;
         modes.sort_by(|a, b| a.0.norm().total_cmp(&b.0.norm()));
         modes.truncate(SLOW);
         let zero = TOLERANCE * spectrum.scale();
@@ -47,8 +50,18 @@ impl Problem {
                 && still.map(|(_, mode)| share(mode)).any(|s| s > TOLERANCE)
         };
         let dropped: Vec<usize> = claims.into_iter().filter(|&p| !borne_out(p)).collect();
+        if self.structure().cases.len() == 1
+            && let Some(&position) = dropped.first()
+        {
+            return Err(Error::input(format!(
+                "`{}` in the block `mean`: this integral is not conserved at these parameters; its density must change \
+                 by a flux that vanishes at both ends",
+                self.borders[position].name
+            )));
+        }
         for position in dropped.into_iter().rev() {
             self.borders.remove(position);
         }
+        Ok(())
     }
 }

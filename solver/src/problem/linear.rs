@@ -339,7 +339,10 @@ pub(super) fn with_borders<T: Scalar>(
             T::zero_impl()
         }
     });
-    (bordered_by(operator, borders, |row, of| -row.corner(of)), mass)
+    (
+        bordered_by(operator, borders, |row, of| -row.corner(of)),
+        mass,
+    )
 }
 
 /// [A c; r d]: `corner` gives d by the border of the row and that of the column.

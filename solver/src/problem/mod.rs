@@ -125,7 +125,7 @@ impl Problem {
         for border in &mut problem.borders {
             border.balance(&problem.direct.layout, &sizes);
         }
-        problem.recognise_claims();
+        problem.recognise_claims()?;
         Ok(problem)
     }
 
@@ -233,11 +233,16 @@ impl Problem {
         Ok(pencil)
     }
 
-    /// Whether a mean is conserved: an envelope then has a second equation.
+    /// Whether a mean is conserved, declared or not: an envelope then has a second equation.
     pub fn conserves_a_mean(&self) -> bool {
         let conserved =
             |b: &Border| matches!(b.kind, ClosureKind::Conserved | ClosureKind::Claimed);
-        self.borders.iter().any(conserved)
+        self.borders.iter().any(conserved) || !self.undeclared().is_empty()
+    }
+
+    /// Integrals that the balances keep and the spec does not declare, as a spec would name them.
+    pub fn undeclared(&self) -> Vec<String> {
+        self.model().undeclared(self.base.case)
     }
 
     /// The rate at which the balance of slowest terms changes its field: Σ |coefficient| |k|^a (2/h)^d over the

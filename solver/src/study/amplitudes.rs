@@ -14,7 +14,8 @@ use crate::problem::Problem;
 use crate::series::Monomial;
 use crate::spectrum::{self, EigenPair};
 use crate::weakly::{
-    self, AmplitudeSystem, CriticalMode, Distance, Expansion, Selection, power, select,
+    self, AmplitudeSystem, CriticalMode, Distance, Expansion, Selection, multiplier_error, power,
+    select,
 };
 use crate::words;
 use serde_json::{Map, Value, json};
@@ -102,6 +103,7 @@ impl AmplitudesReport {
             .slope
             .ok_or_else(|| format!("rounding hides it, most of all in {}", found.row));
         let distances = expansion.distances();
+        let multipliers = expansion.multipliers.clone();
         let slow_rate = slow_rate(problem, &pairs);
         let modes: Vec<(f64, C64)> = expansion
             .modes
@@ -116,6 +118,9 @@ impl AmplitudesReport {
         let companions = Companions::of(setup, problem, &pairs);
         let errors = errors(&companions, problem, &pairs, &system)?;
         check_converged(setup, problem, &pairs, &system, &errors)?;
+        if let Some(error) = multiplier_error(&multipliers, uncertainty(&system, &errors)) {
+            return Err(error);
+        }
         let q: Vec<f64> = modes.iter().map(|(q, _)| *q).collect();
         let states = States::of(&system, &errors, &next, &q);
         let coefficient = |(term, error): (&weakly::Term, &f64)| Coefficient {
@@ -239,6 +244,20 @@ fn slow_rate(problem: &Problem, pairs: &[EigenPair]) -> f64 {
         pair.scale.max(pair.c.norm()).max(floor)
     });
     rates.fold(0.0, f64::max)
+}
+
+/// The largest error of a nonlinear coefficient, relative to the largest of them.
+fn uncertainty(system: &AmplitudeSystem, errors: &[Vec<f64>]) -> f64 {
+    let terms = system
+        .equations
+        .iter()
+        .flatten()
+        .zip(errors.iter().flatten());
+    let nonlinear = terms.filter(|(term, _)| term.monomial.degree() > 1);
+    let (largest, error) = nonlinear.fold((0.0_f64, 0.0_f64), |(size, error), (term, own)| {
+        (size.max(term.g.norm()), error.max(*own))
+    });
+    if error > 0.0 { error / largest } else { 0.0 }
 }
 
 /// A measure of trust: the largest over the equations of |Σ next terms| / the largest term.

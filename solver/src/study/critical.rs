@@ -245,7 +245,10 @@ impl Sampler<'_> {
         if self.question.quantity == Quantity::Growth {
             return Ok((pair.c.re, pair));
         }
-        let c2 = weakly::from_pair(problem, pair.clone())?.c2.re;
+        let c2 = weakly::from_pair(problem, pair.clone())?
+            .conserving()?
+            .c2
+            .re;
         let value = match self.question.quantity {
             Quantity::Resonance => 1.0 / c2,
             _ => c2,

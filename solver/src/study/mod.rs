@@ -201,7 +201,7 @@ impl Setup {
         k: f64,
         selection: Selection,
     ) -> Result<LandauPoint> {
-        weakly::point(&self.problem(base)?, k, selection)
+        weakly::point(&self.problem(base)?, k, selection)?.conserving()
     }
 }
 

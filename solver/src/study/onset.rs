@@ -9,7 +9,7 @@ use super::critical::{Critical, Quantity, Question};
 use super::{Axis, Setup, sensitivity};
 use crate::error::{Error, Result};
 use crate::model::C64;
-use crate::weakly::{self, Envelope, Selection};
+use crate::weakly::{self, Envelope, LandauPoint, Selection};
 use crate::words;
 use serde_json::{Value, json};
 use std::fmt;
@@ -62,7 +62,9 @@ impl Onset {
         }
         let (unit, distance) = distance(name, critical, slope.re > 0.0);
         let tau0 = 1.0 / (slope.re.abs() * unit);
-        let c2 = weakly::from_pair(&problem, pair).map(|point| point.c2);
+        let c2 = weakly::from_pair(&problem, pair)
+            .and_then(LandauPoint::conserving)
+            .map(|point| point.c2);
         let ratio = |c: C64| if c.im == 0.0 { 0.0 } else { c.im / c.re };
         Ok(Onset {
             distance,

@@ -17,7 +17,7 @@ use crate::series::Monomial;
 use crate::spectrum::mirror_image;
 use crate::weakly::{
     self, AmplitudeEquation, Bifurcation, Distance, Envelope, Expansion, LandauPoint, Selection,
-    Waves, benjamin_feir, outputs,
+    Waves, benjamin_feir, multiplier_error, outputs,
 };
 use serde_json::Value;
 use std::slice;
@@ -76,6 +76,8 @@ pub struct PointReport {
     pub benjamin_feir: Decided,
     /// Whether a conserved mean couples to the envelope, whose equation then is not closed.
     pub conserved_mean: bool,
+    /// Integrals that the balances keep and the spec does not declare, as a spec would name them.
+    pub undeclared: Vec<String>,
     /// Self and cross coefficient of a wave in a mirror-symmetric model, or why they cannot be formed.
     pub waves: Option<std::result::Result<Waves, String>>,
     /// c0, c2, c4, … to the order asked for, with their errors.
@@ -102,6 +104,9 @@ impl PointReport {
         let resonance = resonance(point, error.c0)?;
         check_distances(point, &resonance)?;
         let error = standing(setup, point, error)?;
+        if let Some(error) = point.multiplier_error(error.c2) {
+            return Err(error);
+        }
         let [slope, curvature] = envelope(point, companions)?;
         let (equation, small_divisors) = longer(setup, point, companions, &error, order)?;
         let [c0, c2] = [equation.coefficients[0], equation.coefficients[1]];
@@ -110,6 +115,7 @@ impl PointReport {
         let slopes = sensitivity::measured(setup, &point.problem, &point.pair, companions);
         Ok(PointReport {
             conserved_mean: point.problem.conserves_a_mean(),
+            undeclared: point.problem.undeclared(),
             waves: waves(setup, point),
             benjamin_feir: benjamin_feir(curvature, c2),
             slope,
@@ -250,6 +256,10 @@ fn longer(
     }
     let pairs = [point.pair.clone()];
     let expansion = Expansion::to(&point.problem, pairs.to_vec(), order - 1)?;
+    let uncertainty = error.c2 / point.size();
+    if let Some(error) = multiplier_error(&expansion.multipliers, uncertainty) {
+        return Err(error);
+    }
     let words = words(&expansion.distances());
     let system = expansion.last_coefficients();
     let errors = errors(companions, &point.problem, &pairs, &system)?;

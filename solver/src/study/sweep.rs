@@ -374,10 +374,13 @@ fn row(collocations: &Collocations, place: &[f64], point: &LandauPoint) -> Resul
     let (good0, good2) = (stands(error0, point.c0.norm(), scale), standing.is_some());
     let error2 = standing.unwrap_or(error2);
     let near = |d: Option<f64>| d.is_some_and(|d| d <= RESONANT * scale);
+    let not_kept = point.multiplier_error(error2);
     let status = if !good0 {
         "c0 is not converged: a larger M".to_owned()
     } else if !good2 {
         "c2 is not converged: a larger M".to_owned()
+    } else if let Some(error) = &not_kept {
+        error.to_string()
     } else if near(second_harmonic) {
         "near a 2:1 resonance".to_owned()
     } else if near(mean_flow) {
@@ -387,7 +390,7 @@ fn row(collocations: &Collocations, place: &[f64], point: &LandauPoint) -> Resul
     };
     let pair = |c: C64| [c.re, c.im];
     let finite = |error: f64| Some(error).filter(|e| e.is_finite());
-    let known = good0 && good2;
+    let known = good0 && good2 && not_kept.is_none();
     let (c0, c2) = ((point.c0, error0), (point.c2, error2));
     Ok(Row {
         coordinates: place.to_vec(),

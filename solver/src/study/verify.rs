@@ -11,7 +11,7 @@ use super::{Setup, check_wavenumber};
 use crate::error::{Error, Result};
 use crate::problem::{Problem, Profile};
 use crate::series::Monomial;
-use crate::weakly::{Expansion, LandauPoint, Selection};
+use crate::weakly::{self, Expansion, LEFT_OVER, LandauPoint, Selection};
 use crate::words;
 use serde_json::{Value, json};
 use std::fmt;
@@ -164,6 +164,8 @@ pub struct Certificate {
     has_coordinate: bool,
     /// In the order of the parts.
     pub checks: Vec<Check>,
+    /// Integrals that the balances keep and the spec does not declare, as a spec would name them.
+    pub undeclared: Vec<String>,
 }
 
 /// What the parts prove.
@@ -185,7 +187,8 @@ impl Certificate {
         check_order(order)?;
         let base = setup.base(None)?;
         let mut checks = Vec::new();
-        let point = &setup.point(&base, k, selection)?;
+        // A multiplier that does not vanish is a line of the certificate.
+        let point = &weakly::point(&setup.problem(&base)?, k, selection)?;
         checks.extend(order::check(point, order)?);
         checks.extend(adjointness::check(setup, point)?);
         checks.extend(routes(point)?);
@@ -199,13 +202,14 @@ impl Certificate {
             resolution: setup.resolution,
             has_coordinate: structure.coordinate.is_some(),
             checks,
+            undeclared: point.problem.undeclared(),
         })
     }
 
     /// The object that the command line prints.
     pub fn json(&self) -> Value {
         let checks: Vec<Value> = self.checks.iter().map(Check::json).collect();
-        json!({"model": self.model, "k": self.k, "M": self.resolution, "checks": checks})
+        json!({"model": self.model, "k": self.k, "M": self.resolution, "checks": checks, "undeclared": self.undeclared})
     }
 
     /// The certificate fails as a whole if one check does.
@@ -234,6 +238,9 @@ impl fmt::Display for Certificate {
             for check in self.checks.iter().filter(|c| c.part == index + 1) {
                 write!(f, "\n{check}")?;
             }
+        }
+        for integral in &self.undeclared {
+            write!(f, "\n{}", words::undeclared(integral))?;
         }
         Ok(())
     }
@@ -386,7 +393,7 @@ fn convergence(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
                 5,
                 name,
                 multiplier.relative,
-                1e-6,
+                LEFT_OVER,
                 "vanishes where the model keeps what it claims to conserve",
             ),
             false => Check::report(5, name, multiplier.relative, "relative to the forcing"),

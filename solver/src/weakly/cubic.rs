@@ -10,7 +10,7 @@
 use super::bifurcation::equilibrium;
 use super::integrals;
 use super::mode::{JetTable, Mode};
-use super::response::{Multiplier, Question, Response, RightSide, arithmetic};
+use super::response::{Multiplier, Question, Response, RightSide, arithmetic, multiplier_error};
 use super::scramble::{Weight, scrambled, turned};
 use crate::error::{Error, Result};
 use crate::model::{C64, Jet};
@@ -201,7 +201,26 @@ fn singular(k: f64, mean: bool) -> Error {
     }
 }
 
+/// The largest part of the terms beside it that truncation may leave of a multiplier.
+const TRUNCATION: f64 = 1e-3;
+
 impl LandauPoint {
+    /// The point, if the means that its model claims to keep are kept at second order, as far as any collocation shows.
+    ///
+    /// # Errors
+    /// A multiplier that has to vanish and is no error of truncation.
+    pub fn conserving(self) -> Result<Self> {
+        match multiplier_error(&self.multipliers, TRUNCATION) {
+            None => Ok(self),
+            Some(error) => Err(error),
+        }
+    }
+
+    /// What is wrong with the means of a c2 that is known to `error`: a multiplier that has to vanish and does not.
+    pub fn multiplier_error(&self, error: f64) -> Option<Error> {
+        multiplier_error(&self.multipliers, error / self.size())
+    }
+
     /// The wavenumber.
     pub fn k(&self) -> f64 {
         self.pair.k

@@ -194,7 +194,11 @@ impl PhysicalForcing {
     fn right_of(&self, value: impl Fn(C64) -> C64) -> RightSide {
         let product = |(v, f): (&C64, &C64)| value(*v) * f;
         let equations = self.values.iter().zip(&self.factors).map(product);
-        let closures = self.integrals.iter().zip(&self.closure_factors).map(product);
+        let closures = self
+            .integrals
+            .iter()
+            .zip(&self.closure_factors)
+            .map(product);
         RightSide {
             equations: Turned(equations.collect()),
             closures: closures.collect(),
@@ -286,7 +290,8 @@ impl Group {
     ) {
         let table = self.table(problem, modes, |_| true);
         let jets = |jet: usize, index: usize| table[index].get(jet)?.clone();
-        self.levels.complete(&self.program, monomials, degree, &jets);
+        self.levels
+            .complete(&self.program, monomials, degree, &jets);
     }
 
     /// The chosen jets of each mode at the points, `[mode][jet][point]`; nothing for one that is zero.

@@ -84,5 +84,7 @@ pub(super) fn second_order(
     let found = integrals.outputs(&monomials, 2);
     let values = mean.first().map_or(&[][..], |&index| &found[index]);
     let right = values.iter().zip(&problem.borders);
-    right.map(|(value, border)| -value * border.factor()).collect()
+    right
+        .map(|(value, border)| -value * border.factor())
+        .collect()
 }

@@ -28,6 +28,6 @@ pub use mode::Mode;
 pub use normalisation::normalise;
 pub use outputs::outputs;
 pub use pattern::{Pattern, PlaneField, Window, pattern};
-pub use response::{Multiplier, arithmetic};
+pub use response::{LEFT_OVER, Multiplier, arithmetic, multiplier_error};
 pub use system::{AmplitudeSystem, Term, power};
 pub use waves::{Stable, Waves};

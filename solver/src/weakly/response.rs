@@ -2,6 +2,7 @@
 //! with an amplitude of its own, closed where it is zero.
 
 use super::mode::Mode;
+use crate::error::Error;
 use crate::model::{C64, ClosureKind, FieldId};
 use crate::numerics::dense::{Scalar, bordered, norm, scalars};
 use crate::problem::{Border, Known, Problem, Profile, Solver, Turned};
@@ -26,6 +27,21 @@ pub struct Multiplier {
 
 /// The part of the terms beside it that a multiplier has to stay below where it has to vanish.
 pub const LEFT_OVER: f64 = 1e-6;
+
+/// The error that multipliers amount to: that of the largest one that has to vanish and is neither below
+/// [`LEFT_OVER`] nor within `uncertainty`, the relative error of what it belongs to.
+pub fn multiplier_error(multipliers: &[Multiplier], uncertainty: f64) -> Option<Error> {
+    let bound = LEFT_OVER.max(uncertainty);
+    let standing = multipliers
+        .iter()
+        .filter(|m| m.vanishes && (m.relative > bound || m.relative.is_nan()));
+    let worst = standing.max_by(|a, b| a.relative.total_cmp(&b.relative))?;
+    Some(Error::NotKept {
+        closure: worst.closure.clone(),
+        order: worst.order,
+        relative: worst.relative,
+    })
+}
 
 /// Right-hand sides of one problem, in the solver's basis.
 #[derive(Clone, Debug)]
@@ -256,14 +272,10 @@ impl Question<'_> {
     }
 }
 
-/// The largest part of a balance that a multiplier makes up, relative to the forcing and the terms of that balance.
-fn share(
-    problem: &Problem,
-    border: &Border,
-    value: f64,
-    forcing: &Turned,
-    terms: &[f64],
-) -> f64 {
+/// How large a multiplier is beside what it balances: the largest part that it makes up of a balance with its forcing
+/// and terms, and its part of the forcing of all balances. The lesser of the two counts: a balance may hold nothing but
+/// rounding, and the balances have units of their own.
+fn share(problem: &Problem, border: &Border, value: f64, forcing: &Turned, terms: &[f64]) -> f64 {
     let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let rows = problem.direct.layout.rows.iter().zip(terms);
     let shares = rows.map(|(block, terms)| {
@@ -272,7 +284,8 @@ fn share(
         let beside = forced.fold(0.0, f64::max) + terms;
         if own == 0.0 { 0.0 } else { own / beside }
     });
-    shares.fold(0.0, f64::max)
+    let of_all = norm(&border.column) * value / norm(forcing);
+    shares.fold(0.0, f64::max).min(of_all)
 }
 
 impl Response {

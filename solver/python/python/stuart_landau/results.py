@@ -236,6 +236,10 @@ class Point(Result):
         self.small_divisors: list[str] = data["small_divisors"]
         #: What the base state satisfies but nearly, in words.
         self.notes: list[str] = data["notes"]
+        #: Whether a conserved mean couples to the envelope, whose equation then is not closed.
+        self.conserved_mean: bool = data["conserved_mean"]
+        #: Integrals that the balances keep and the spec does not name.
+        self.undeclared: list[str] = data["undeclared"]
 
     def __getattr__(self, name: str) -> complex:
         data = self.__dict__.get("data", {})

@@ -111,6 +111,8 @@ impl PointReport {
             "normalization": self.normalization,
             "stable": stable.ok(),
             "small_divisors": self.small_divisors,
+            "conserved_mean": self.conserved_mean,
+            "undeclared": self.undeclared,
             "notes": self.notes,
         });
         for (key, value) in top.values {

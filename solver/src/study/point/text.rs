@@ -40,6 +40,9 @@ impl fmt::Display for PointReport {
         }
         self.write_envelope(f)?;
         self.write_waves(f)?;
+        for integral in &self.undeclared {
+            write!(f, "\n  {}", words::undeclared(integral))?;
+        }
         for divisor in self.small_divisors.iter().take(NAMED) {
             write!(f, "\n  {divisor}")?;
         }

@@ -3,7 +3,9 @@
 //! X⁰ plus the series through order N, with the amplitudes moving by their equations, put into the *unexpanded*
 //! residual and boundary conditions: the defect must fall as the amplitude to the power N + 1. A wrong factor,
 //! shift, mass term, boundary datum or sign in N3 shows here, off criticality too. Every balance and every
-//! condition is judged by itself, where its defect stands clear of what rounding leaves.
+//! condition, on integrals too, is judged by itself, where its defect stands clear of what rounding leaves.
+
+mod integrals;
 
 use super::{Check, Verdict};
 use crate::error::Result;
@@ -12,6 +14,7 @@ use crate::problem::{Problem, Profile};
 use crate::series::Monomial;
 use crate::space::{Block, Points};
 use crate::weakly::{Expansion, LandauPoint, Mode, power};
+use integrals::OnIntegrals;
 
 /// Phases at which the defect is sampled, for each power of the amplitude that it falls by.
 const PHASES: usize = 3;
@@ -140,13 +143,20 @@ pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
     }
 }
 
-/// A balance, or a condition at an end.
+/// A balance, a condition at an end, or one on an integral.
 fn name(problem: &Problem, row: usize) -> String {
     let balances = &problem.structure().balances;
+    let walls = &problem.direct.walls;
+    if let Some(border) = row
+        .checked_sub(balances.len() + walls.len())
+        .and_then(|index| problem.borders.get(index))
+    {
+        return format!("integral condition `{}`", border.name);
+    }
     match balances.find(BalanceId::at(row)) {
         Some(balance) => format!("balance `{balance}`"),
         None => {
-            let wall = &problem.direct.walls[row - balances.len()];
+            let wall = &walls[row - balances.len()];
             let coordinate = problem.structure().coordinate.as_deref().unwrap_or("y");
             let space = problem.space();
             let place = space.y(space.end(wall.end));
@@ -163,6 +173,7 @@ struct Series<'e> {
     expansion: &'e Expansion,
     modes: Vec<(Monomial, Mode)>,
     grids: Vec<OnGrid>,
+    integrals: Option<OnIntegrals>,
 }
 
 /// Jets at the points of one family.
@@ -180,6 +191,25 @@ struct Tables {
     rounding: Vec<Vec<f64>>,
 }
 
+/// The jets of modes, and of the base state, at the points of a family.
+fn on_grid(expansion: &Expansion, modes: &[Mode], points: Points) -> OnGrid {
+    let problem = expansion.problem.as_ref();
+    let jets = &problem.structure().residual_jets;
+    let k = expansion.modes.first().map_or(0.0, |mode| mode.pair.k);
+    let places = problem.space().places(points).into_iter();
+    let states = places.map(|place| problem.base.at(place, k));
+    let states: Vec<Vec<f64>> = states.collect();
+    let tables = modes
+        .iter()
+        .map(|mode| Tables::new(problem, mode, jets, points));
+    OnGrid {
+        points,
+        base: states.iter().map(|s| base_jets(problem, s, jets)).collect(),
+        tables: tables.collect(),
+        states,
+    }
+}
+
 impl<'e> Series<'e> {
     fn new(expansion: &'e Expansion) -> Self {
         let problem = expansion.problem.as_ref();
@@ -195,27 +225,13 @@ impl<'e> Series<'e> {
                 kinds.push(points);
             }
         }
-        let jets = &problem.structure().residual_jets;
-        let k = expansion.modes.first().map_or(0.0, |mode| mode.pair.k);
-        let on = |points: Points| {
-            let places = problem.space().places(points).into_iter();
-            let states = places.map(|place| problem.base.at(place, k));
-            let states: Vec<Vec<f64>> = states.collect();
-            let tables = modes
-                .iter()
-                .map(|(_, mode)| Tables::new(problem, mode, jets, points));
-            OnGrid {
-                points,
-                base: states.iter().map(|s| base_jets(problem, s, jets)).collect(),
-                tables: tables.collect(),
-                states,
-            }
-        };
-        let grids = kinds.into_iter().map(on).collect();
+        let profiles: Vec<Mode> = modes.iter().map(|(_, mode)| mode.clone()).collect();
+        let on = |points: Points| on_grid(expansion, &profiles, points);
         Series {
+            grids: kinds.into_iter().map(on).collect(),
+            integrals: OnIntegrals::new(expansion, &profiles),
             expansion,
             modes,
-            grids,
         }
     }
 
@@ -287,8 +303,20 @@ impl<'e> Series<'e> {
         (0..count).map(sample).collect()
     }
 
-    /// The largest residual of every balance (at its own points) and of every boundary condition.
+    /// The largest residual of every balance (at its own points), of every boundary condition and of every condition on
+    /// an integral.
     fn defects(&self, amplitude: f64) -> Vec<Defect> {
+        let mut found = self.local_defects(amplitude);
+        let integrals = self.integral_defects(amplitude).into_iter();
+        found.extend(integrals.map(|defect| Defect {
+            value: defect.value,
+            rounding: f64::EPSILON * defect.size,
+        }));
+        found
+    }
+
+    /// Those of the balances and of the boundary conditions.
+    fn local_defects(&self, amplitude: f64) -> Vec<Defect> {
         let problem = self.expansion.problem.as_ref();
         let balances = problem.structure().balances.len();
         let mut found = vec![Defect::default(); balances + problem.direct.walls.len()];
