@@ -243,6 +243,9 @@ fn entries(model: &str, operator: &str) -> String {
                 ),
                 _ => continue,
             }
+        } else if formula.contains("\\int") {
+            // A part of an integral condition, which is no row of N.
+            continue;
         } else if let Some(degree) = operator.strip_prefix('N') {
             let row = name(label);
             (

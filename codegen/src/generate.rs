@@ -1,7 +1,6 @@
 //! The pipeline on a screen.
 
 use crate::diagnostic::{Diagnostics, SourceFile};
-use crate::emit::text;
 use crate::sources::Sources;
 use crate::{derive, kernel, model};
 use landau_contract::TapeModel;
@@ -19,8 +18,8 @@ pub fn generate(
     let model = model::resolve(sources)?;
     let mut derivation = derive::derive(model, ORDER)?;
     let mut kernels = kernel::kernels(&mut derivation);
-    let undeclared = derivation.operators.cases.ids();
-    let undeclared = undeclared.map(|case| (case, text::undeclared(&derivation, case)));
+    let undeclared = derivation.operators.cases.pairs();
+    let undeclared = undeclared.map(|(id, case)| (id, case.undeclared.clone()));
     kernels.undeclared = undeclared.filter(|(_, words)| !words.is_empty()).collect();
     Ok((derivation, kernels))
 }

@@ -4,7 +4,6 @@
 use super::base_wall::{BaseCheck, base_checks, base_conditions};
 use super::boundary::{Combination, Simplifier, as_condition, conjugate, demands, reduce};
 use super::closure::{self, CaseClosure};
-use super::invariant::Undeclared;
 use super::wall::{
     BaseCondition, BaseRules, CaseProblem, WallCondition, Walls, at_end, base_rules, walls,
 };
@@ -42,8 +41,8 @@ pub struct Case {
     pub closures: Vec<CaseClosure>,
     /// Positions in the block `mean` of the conserved integrals among them.
     pub conserved: Vec<usize>,
-    /// Integrals that the balances keep and the spec does not declare.
-    pub undeclared: Vec<Undeclared>,
+    /// Integrals that the balances keep and the spec does not declare, as a spec would name them.
+    pub undeclared: Vec<String>,
 }
 
 pub(super) fn derive(

@@ -6,7 +6,7 @@
 //! the collocated problem decides. Beyond first order the multiplier decides, which has to vanish.
 
 use super::density::Density;
-use super::invariant::{Proof, Undeclared, end_rules};
+use super::invariant::{Proof, end_rules};
 use super::linear::DirectTerm;
 use super::mean::{MeanWalls, carried, conserved, mean_walls, multiplier};
 use super::wall::{BaseRules, CaseProblem, reduced};
@@ -82,7 +82,7 @@ pub(super) struct Closures {
     /// Positions in the block `mean` of the conserved integrals among them.
     pub conserved: Vec<usize>,
     /// Integrals that are kept and not declared.
-    pub undeclared: Vec<Undeclared>,
+    pub undeclared: Vec<String>,
     /// How many, the first of the list, are integrals of the base state that nothing declares.
     candidates: usize,
 }
@@ -162,7 +162,7 @@ pub(super) fn derive(
             }
         }
     }
-    closures.undeclared = proof.undeclared(deriver, &closures.list);
+    closures.undeclared = deriver.aside(|deriver| proof.undeclared(deriver, &closures.list));
     closures
 }
 
@@ -187,12 +187,14 @@ impl Closures {
         }
         let column = multiplier(deriver, problem.linear, &density.linear);
         let proved = column.filter(|column| {
-            walls.carries(deriver, problem, column, &density.linear)
+            let linear = &density.linear;
+            deriver.aside(|deriver| walls.carries(deriver, problem, column, linear))
                 && conserved(deriver, problem, walls, column, &self.list)
         });
         if let Some(column) = proved {
             // An integral of the base that only the linear balances keep is none to be kept.
-            if declared.is_none() && matches!(proof.kept(deriver, &column), Ok(None)) {
+            let refuted = |deriver: &mut Deriver| matches!(proof.kept(deriver, &column), Ok(None));
+            if declared.is_none() && deriver.aside(refuted) {
                 return;
             }
             self.list.push(CaseClosure::Conserved { density, column });
@@ -298,7 +300,7 @@ fn gauge(
     for row in paired.into_iter().chain(others) {
         for weight in null_candidates(deriver, problem, row) {
             let column = vec![(row, weight)];
-            let is_null = walls.carries(deriver, problem, &column, &[]);
+            let is_null = deriver.aside(|deriver| walls.carries(deriver, problem, &column, &[]));
             if is_null && conserved(deriver, problem, walls, &column, &[]) {
                 return Ok(CaseClosure::Gauge { field, column });
             }

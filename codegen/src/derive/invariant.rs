@@ -11,21 +11,13 @@ use super::closure::CaseClosure;
 use super::mean::MeanWalls;
 use super::wall::{BaseRules, CaseProblem, at_end};
 use crate::form::Form;
+use crate::formula::{Arrangement, Formula, Mark, plain};
 use crate::graph::{
     BalanceId, FieldId, Graph, Id, Jet, LinearSystem, Operator, Rational, Variable,
 };
 use crate::model::End;
 use num_traits::One;
 use std::collections::BTreeSet;
-
-/// An integral that the balances of a case keep and the spec does not declare.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Undeclared {
-    /// Jets and weights of its density, to first order.
-    pub linear: Vec<(Jet, Id)>,
-    /// Whether products take part in the density.
-    pub is_nonlinear: bool,
-}
 
 /// Conditions of one end solved for jets without ∂x: each says jet = −Σ coefficient · jets.
 pub(super) type EndRules = Vec<(Jet, Vec<(Jet, Id)>)>;
@@ -73,29 +65,32 @@ pub(super) fn end_rules(
 }
 
 impl Proof<'_> {
-    /// The integrals that the case keeps beside `declared`.
-    pub fn undeclared(&self, deriver: &mut Deriver, declared: &[CaseClosure]) -> Vec<Undeclared> {
-        let mut found: Vec<Undeclared> = Vec::new();
+    /// The integrals that the case keeps beside `declared`, as a spec would name them.
+    pub fn undeclared(&self, deriver: &mut Deriver, declared: &[CaseClosure]) -> Vec<String> {
+        let mut words = Vec::new();
+        let mut found: Vec<Vec<(Jet, Id)>> = Vec::new();
         let columns = self.columns(deriver);
         for column in self.null(deriver, &columns) {
             let linear = self.walls.density(deriver, self.problem, &column);
             let known = declared.iter().filter_map(CaseClosure::density);
             let known: Vec<Vec<(Jet, Id)>> = known
                 .map(|density| density.linear.clone())
-                .chain(found.iter().map(|undeclared| undeclared.linear.clone()))
+                .chain(found.iter().cloned())
                 .collect();
             if linear.is_empty() || depends(deriver, &linear, &known) {
                 continue;
             }
             if let Ok(Some(sum)) = self.kept(deriver, &column) {
                 let moving = |m: &Vec<Jet>| m.len() > 1 && m.iter().any(|jet| jet.t > 0);
-                found.push(Undeclared {
-                    is_nonlinear: sum.terms.keys().any(moving),
-                    linear,
-                });
+                let more = match sum.terms.keys().any(moving) {
+                    true => " to first order, with products beyond it",
+                    false => "",
+                };
+                words.push(format!("integral({}){more}", written(deriver, &linear)));
+                found.push(linear);
             }
         }
-        found
+        words
     }
 
     /// Weights that a balance may have in a divergence: its divisor, also times the coordinate.
@@ -286,6 +281,16 @@ impl Proof<'_> {
         }
         result
     }
+}
+
+/// A linear density in the notation of the balances.
+fn written(deriver: &Deriver, density: &[(Jet, Id)]) -> String {
+    let letters = deriver.model.letters(Arrangement::Flat);
+    let terms = density.iter().map(|&(jet, weight)| {
+        let jet = letters.jet(jet, Mark::None);
+        letters.scaled(deriver.graph, weight, vec![jet])
+    });
+    plain(&Formula::sum(terms))
 }
 
 /// A jet at an end by the jets that the conditions leave free.

@@ -27,7 +27,6 @@ pub use boundary::{Combination, Symbol};
 pub use case::{AdjointCondition, Case};
 pub use closure::CaseClosure;
 pub use density::Density;
-pub use invariant::Undeclared;
 pub use linear::{AdjointTerm, DirectTerm, Term};
 pub use offsets::Offsets;
 pub use open::{Dependence, Opener, carry_out, dependence};
@@ -293,6 +292,14 @@ impl<'a> Deriver<'a> {
             Expander::new(0, &self.model.base.closed, &self.uniform, &self.dependence);
         let form = expander.expand(self.graph, id).ok()?;
         Some(form.base(self.graph))
+    }
+
+    /// The result of an analysis that leaves no expression behind: what is derived later does not depend on it.
+    pub(super) fn aside<R>(&mut self, analysis: impl FnOnce(&mut Self) -> R) -> R {
+        let graph = self.graph.clone();
+        let result = analysis(self);
+        *self.graph = graph;
+        result
     }
 
     /// Whether an expression of the base state vanishes, with its laws opaque or, where the base state is given

@@ -3,7 +3,7 @@
 use crate::derive::{AdjointCondition, Case, CaseClosure, Derivation, Term};
 use crate::form::Form;
 use crate::formula::{self, Arrangement, Coefficient, Formula, Letters, Mark, latex_words, plain};
-use crate::graph::{BalanceId, CaseId, FieldId, Id, Jet, Table};
+use crate::graph::{BalanceId, FieldId, Id, Jet, Table};
 use crate::model::End;
 use landau_contract::Id as Position;
 use std::collections::BTreeMap;
@@ -117,25 +117,6 @@ fn lines(writer: &Writer, section: Section) -> Vec<Line> {
 pub fn nonlinear_row(derivation: &Derivation, degree: usize, row: BalanceId) -> String {
     let form = &derivation.operators.nonlinear[degree - 2][row];
     plain(&Writer::new(derivation, Arrangement::Flat).form(form))
-}
-
-/// The integrals of a case that its balances keep and the spec does not declare, as a spec would name them.
-pub fn undeclared(derivation: &Derivation, case: CaseId) -> Vec<String> {
-    let writer = Writer::new(derivation, Arrangement::Flat);
-    let integrals = derivation.operators.cases[case].undeclared.iter();
-    let words = integrals.map(|integral| {
-        let terms = integral.linear.iter().map(|(jet, weight)| {
-            let jet = writer.letters.jet(*jet, Mark::None);
-            writer.scaled(*weight, vec![jet])
-        });
-        let density = plain(&Formula::sum(terms));
-        if integral.is_nonlinear {
-            format!("integral({density}) to first order, with products beyond it")
-        } else {
-            format!("integral({density})")
-        }
-    });
-    words.collect()
 }
 
 pub(super) struct Writer<'a> {
