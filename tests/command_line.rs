@@ -233,7 +233,7 @@ fn sweeps_are_deterministic_and_resume() {
     assert!(
         one.lines()
             .next()
-            .is_some_and(|h| h == "k,r,c0_re,c0_im,c0_error,c2_re,c2_im,c2_error,amplitude,bifurcation,mean_flow,second_harmonic,status")
+            .is_some_and(|h| h == "k,r,c0_re,c0_im,c0_error,c2_re,c2_im,c2_error,amplitude,bifurcation,mean_flow,second_harmonic,leading_re,status")
     );
     assert!(one.lines().skip(1).all(|line| line.ends_with(",ok")));
 }

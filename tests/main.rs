@@ -22,6 +22,7 @@ mod integrals;
 mod kept;
 mod latex;
 mod layout;
+mod leading;
 mod limits;
 mod mistakes;
 mod nesting;

@@ -166,7 +166,7 @@ fn a_study_becomes_a_report() {
     let header = table.lines().next().expect("a header");
     assert_eq!(
         header,
-        "case,k,c0_re,c0_im,c0_error,c2_re,c2_im,c2_error,amplitude,mean_flow,second_harmonic,label,bifurcation,status"
+        "case,k,c0_re,c0_im,c0_error,c2_re,c2_im,c2_error,amplitude,mean_flow,second_harmonic,leading_re,label,bifurcation,status"
     );
     assert!(
         table

@@ -119,7 +119,7 @@ pub enum Command {
     },
     /// Landau points over ranges of k and parameters, as CSV; resumes where it was interrupted.
     #[command(
-        after_help = "Examples:\n  landau sweep my.model --over k=0.03:0.18:151 --out figure6.csv --plot figure6.svg\n  landau sweep my.model --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv.shard-3 --shard 3/16\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv --emit slurm --tasks 64"
+        after_help = "Examples:\n  landau sweep my.model --over k=0.03:0.18:151 --follow --out figure6.csv --plot figure6.svg\n  landau sweep my.model --over S=50:800:16 --set H=auto --k 0.16 --out figure11.csv\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv.shard-3 --shard 3/16\n  landau sweep my.model --over k=0.03:0.18:151 --over S=50:800:300 --out atlas.csv --emit slurm --tasks 64"
     )]
     Sweep {
         /// A built model, or the path of a .model file.
@@ -242,12 +242,16 @@ pub struct Files {
 
 #[derive(Args)]
 pub struct SweepOptions {
-    /// A range of k or of a parameter (repeatable; the first varies fastest and is followed).
+    /// A range of k or of a parameter (repeatable; the first varies fastest).
     #[arg(long, value_name = "NAME=FROM:TO:COUNT", required = true)]
     pub over: Vec<String>,
     /// The fixed wavenumber, when no range varies k.
     #[arg(long, allow_negative_numbers = true)]
     pub k: Option<f64>,
+    /// Follow one mode along the first axis, from where the leading growth rate is largest (or from the mode of --near).
+    /// Without it each row holds the leading mode of its place.
+    #[arg(long)]
+    pub follow: bool,
     /// Where the table goes.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,

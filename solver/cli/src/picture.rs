@@ -80,7 +80,7 @@ const SHOWN: usize = 24;
 
 /// The table, thinned to a screenful.
 pub fn table(sweep: &Sweep, rows: &[Row]) {
-    let names = sweep.ranges.iter().map(|r| format!("{:>12}", r.name));
+    let names = sweep.ranges().iter().map(|r| format!("{:>12}", r.name));
     let columns = ["a0", "a2", "A_e"].iter().map(|n| format!("{n:>16}"));
     say!("{}", names.chain(columns).collect::<String>());
     let stride = rows.len().div_ceil(SHOWN).max(1);
@@ -95,16 +95,16 @@ pub fn table(sweep: &Sweep, rows: &[Row]) {
 /// Growth rate, c2 and amplitude over one axis, lines in the plane over two, drawn.
 pub fn sweep(setup: &Setup, sweep: &Sweep, rows: &[Row]) -> Option<Drawing> {
     let title = &setup.model.structure().title;
-    if let [first, second] = sweep.ranges.as_slice() {
+    if let [first, second] = sweep.ranges() {
         let names = [first, second].map(|r| r.name.as_str());
         return atlas(title, names, [&first.values, &second.values], rows);
     }
-    let axis = sweep.ranges[0].name.as_str();
+    let axis = sweep.ranges()[0].name.as_str();
     let mut growth = Panel::new("growth rate", axis, "a0");
     let mut landau = Panel::new("first Landau coefficient", axis, "a2");
     let mut amplitude = Panel::new("equilibrium amplitude", axis, "A_e");
     for line in rows.chunk_by(|a, b| a.coordinates[1..] == b.coordinates[1..]) {
-        let others = sweep.ranges[1..].iter().zip(&line[0].coordinates[1..]);
+        let others = sweep.ranges()[1..].iter().zip(&line[0].coordinates[1..]);
         let label: Vec<String> = others
             .map(|(r, x)| format!("{} = {x:.4}", r.name))
             .collect();

@@ -17,7 +17,7 @@ use landau_solver::study::onset::CriticalReport;
 use landau_solver::study::point::PointReport;
 use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::spectrum::SpectrumReport;
-use landau_solver::study::sweep::{Range, Sweep};
+use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::verify::Certificate;
 use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality, journal_path};
 use landau_solver::words;
@@ -184,63 +184,50 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
     Ok(())
 }
 
-pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<()> {
-    let mut ranges: Vec<Range> = Vec::new();
-    for text in &options.over {
-        let (name, numbers) = range("--over", text, 3).map_err(Error::Input)?;
-        let count = numbers[2];
-        if count < 1.0 || count.fract() != 0.0 || count > 1e6 {
-            return Err(Error::input(format!(
-                "--over {text}: COUNT is a whole number from 1 to 1000000"
-            )));
-        }
-        let axis = Axis::named(setup.model.as_ref(), &name)?;
-        if ranges.iter().any(|r| r.axis == axis) {
-            return Err(Error::input(format!(
-                "--over {text}: `{name}` varies already"
-            )));
-        }
-        let count = count as usize;
-        let step = if count > 1 {
-            (numbers[1] - numbers[0]) / (count - 1) as f64
-        } else {
-            0.0
-        };
-        let values: Vec<f64> = (0..count)
-            .map(|i| {
-                if i > 0 && i + 1 == count {
-                    numbers[1]
-                } else {
-                    numbers[0] + step * i as f64
-                }
-            })
-            .collect();
-        for &value in [values.first(), values.last()].into_iter().flatten() {
-            if axis == Axis::Wavenumber {
-                check_wavenumber(value)?;
-            }
-            setup.moved(axis, value)?;
-        }
-        ranges.push(Range { name, axis, values });
+/// The evenly spaced values that `--over NAME=FROM:TO:COUNT` asks for.
+fn over(setup: &Setup, text: &str) -> Result<Range> {
+    let (name, numbers) = range("--over", text, 3).map_err(Error::Input)?;
+    let count = numbers[2];
+    if count < 1.0 || count.fract() != 0.0 || count > 1e6 {
+        return Err(Error::input(format!(
+            "--over {text}: COUNT is a whole number from 1 to 1000000"
+        )));
     }
-    if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
-        check_wavenumber(
-            options
-                .k
-                .ok_or_else(|| Error::input("no range varies k: give it with --k"))?,
-        )?;
-    }
-    let sweep = Sweep {
-        setup,
-        ranges,
-        near: common.near,
-        k: options.k,
-        derived: options
-            .column
-            .iter()
-            .map(|text| column(setup.model.as_ref(), text))
-            .collect::<Result<_>>()?,
+    let axis = Axis::named(setup.model.as_ref(), &name)?;
+    let count = count as usize;
+    let step = if count > 1 {
+        (numbers[1] - numbers[0]) / (count - 1) as f64
+    } else {
+        0.0
     };
+    let value = |i: usize| {
+        if i > 0 && i + 1 == count {
+            numbers[1]
+        } else {
+            numbers[0] + step * i as f64
+        }
+    };
+    let values = (0..count).map(value).collect();
+    Ok(Range { name, axis, values })
+}
+
+pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<()> {
+    let ranges = options
+        .over
+        .iter()
+        .map(|text| over(setup, text))
+        .collect::<Result<_>>()?;
+    let derived = options
+        .column
+        .iter()
+        .map(|text| column(setup.model.as_ref(), text))
+        .collect::<Result<_>>()?;
+    let mode = match common.near {
+        near if options.follow => RowMode::Followed(near),
+        Some(target) => RowMode::Nearest(target),
+        None => RowMode::Leading,
+    };
+    let sweep = Sweep::new(setup, ranges, options.k, mode, derived)?;
     if let Some(engine) = options.emit {
         return script::emit(engine, &sweep, options, common);
     }
@@ -265,7 +252,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
     let numbered = rows.iter().filter(|r| r.c0.is_some()).count();
     let unstable = rows
         .iter()
-        .filter(|r| r.c0.is_some_and(|c| c[0] > 0.0))
+        .filter(|r| r.leading.is_some_and(|growth| growth > 0.0))
         .count();
     if common.json {
         say!(

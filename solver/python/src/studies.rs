@@ -18,7 +18,7 @@ use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::row::Row;
 use landau_solver::study::shard::{Share, merge};
 use landau_solver::study::spectrum::SpectrumReport;
-use landau_solver::study::sweep::{Range, Sweep};
+use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::verify::Certificate;
 use landau_solver::study::{Axis, Setup, check_wavenumber};
 use landau_solver::weakly::{Selection, Window, pattern};
@@ -48,41 +48,36 @@ fn selection(near: Near) -> Selection<'static> {
     })
 }
 
-/// A sweep over axes that are checked.
+/// A sweep over named axes.
 fn swept<'s>(
     setup: &'s Setup,
     axes: Vec<(String, Vec<f64>)>,
     k: Option<f64>,
-    near: Near,
+    mode: RowMode,
     columns: &[String],
 ) -> Result<Sweep<'s>> {
-    let mut ranges = Vec::new();
-    for (name, values) in axes {
-        let axis = Axis::named(setup.model.as_ref(), &name)?;
-        if values.is_empty() {
-            return Err(Error::input(format!("the axis `{name}` has no values")));
-        }
-        for &value in &values {
-            if axis == Axis::Wavenumber {
-                check_wavenumber(value)?;
-            }
-            setup.moved(axis, value)?;
-        }
-        ranges.push(Range { name, axis, values });
+    let ranges = axes
+        .into_iter()
+        .map(|(name, values)| {
+            let axis = Axis::named(setup.model.as_ref(), &name)?;
+            Ok(Range { name, axis, values })
+        })
+        .collect::<Result<_>>()?;
+    let derived = columns
+        .iter()
+        .map(|text| column(setup.model.as_ref(), text))
+        .collect::<Result<_>>()?;
+    Sweep::new(setup, ranges, k, mode, derived)
+}
+
+/// The mode that rows hold: `near` names one, `follow` keeps to it along the first axis.
+fn row_mode(near: Near, follow: bool) -> RowMode {
+    let near = near.map(|(re, im)| C64::new(re, im));
+    match near {
+        near if follow => RowMode::Followed(near),
+        Some(target) => RowMode::Nearest(target),
+        None => RowMode::Leading,
     }
-    if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
-        check_wavenumber(k.ok_or_else(|| Error::input("no axis is k: give the wavenumber"))?)?;
-    }
-    Ok(Sweep {
-        setup,
-        ranges,
-        near: near.map(|(re, im)| C64::new(re, im)),
-        k,
-        derived: columns
-            .iter()
-            .map(|text| column(setup.model.as_ref(), text))
-            .collect::<Result<_>>()?,
-    })
 }
 
 fn row(row: &Row) -> Value {
@@ -96,6 +91,7 @@ fn row(row: &Row) -> Value {
         "bifurcation": row.bifurcation,
         "mean_flow": row.mean_flow,
         "second_harmonic": row.second_harmonic,
+        "leading_re": row.leading,
         "status": row.status,
         "derived": row.derived,
     })
@@ -281,6 +277,7 @@ impl Core {
         axes: Vec<(String, Vec<f64>)>,
         k: Option<f64>,
         near: Near,
+        follow: bool,
         columns: Vec<String>,
         out: Option<PathBuf>,
         force: bool,
@@ -288,7 +285,7 @@ impl Core {
         let model = self.model.clone();
         watched(py, move |watch| {
             let setup = setup(model, &set, resolution)?;
-            let sweep = swept(&setup, axes, k, near, &columns)?;
+            let sweep = swept(&setup, axes, k, row_mode(near, follow), &columns)?;
             let rows = match out {
                 Some(path) => {
                     let overwrite = Overwrite::forced(force);
@@ -332,6 +329,7 @@ impl Core {
         axes: Vec<(String, Vec<f64>)>,
         k: Option<f64>,
         near: Near,
+        follow: bool,
         columns: Vec<String>,
         share: (usize, usize),
         out: PathBuf,
@@ -340,7 +338,7 @@ impl Core {
         watched(py, move |watch| {
             let setup = setup(model, &set, resolution)?;
             let share = Share::parse(&format!("{}/{}", share.0, share.1))?;
-            let sweep = swept(&setup, axes, k, near, &columns)?;
+            let sweep = swept(&setup, axes, k, row_mode(near, follow), &columns)?;
             sweep.run_share(share, &out, Overwrite::Recognised, watch, |_| {})
         })
     }

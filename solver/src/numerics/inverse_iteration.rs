@@ -7,6 +7,8 @@ use faer::Mat;
 const MOST_ITERATIONS: usize = 30;
 /// An entry of a vector that falls by more in one iteration is still on its way to a small value.
 const FALLING: f64 = 1e3;
+/// Error of a vector of size one at which the iteration ends.
+const VECTOR: f64 = 1e-14;
 
 /// An eigenvalue of a pencil with its vectors, each of size one.
 #[derive(Clone, Debug)]
@@ -42,10 +44,10 @@ pub fn inverse_iteration<T: Scalar>(
     (right, left): (Vec<T>, Vec<T>),
 ) -> Option<Eigen<T>> {
     let factorised = Factorised::new(shifted);
-    let (mut x, mut y): (Vec<T>, Vec<T>) = (Vec::new(), Vec::new());
+    let (mut x, mut y) = (unit(&right), unit(&left));
     let mut mass_x = mass.apply(&right);
     let mut mass_y = mass.apply_adjoint(&left);
-    let (mut c, mut change) = (shift, f64::INFINITY);
+    let (mut c, mut change, mut turn) = (shift, f64::INFINITY, 1.0);
     for iteration in 0..MOST_ITERATIONS {
         let new_x = factorised.solve(&mass_x);
         let new_y = factorised.solve_adjoint(&mass_y);
@@ -61,16 +63,21 @@ pub fn inverse_iteration<T: Scalar>(
         }
         let next = shift - dot(&new_y, &mass_x) / denominator;
         let [new_x, new_y] = [scaled(&new_x, 1.0 / size_x), scaled(&new_y, 1.0 / size_y)];
-        let settled = !falls(&x, &new_x) && !falls(&y, &new_y);
+        let falls = falls(&x, &new_x) || falls(&y, &new_y);
+        // Errors of the vectors fall by one factor an iteration, until rounding stops them.
+        let turn_before = f64::max(turn, f64::MIN_POSITIVE);
+        turn = angle(&x, &new_x).max(angle(&y, &new_y));
+        let aligned = turn * turn <= VECTOR * turn_before || turn >= 0.1 * turn_before;
         (x, y) = (new_x, new_y);
         mass_x = scaled(&new_mass_x, 1.0 / size_x);
         mass_y = mass.apply_adjoint(&y);
         let step = (next - c).norm();
         c = next;
-        // The eigenvalue converges twice as fast as the vectors: one more turn after it settles.
+        // The eigenvalue converges twice as fast as the vectors.
         let floor = 1e-14 * c.norm().max((shift - c).norm()) + 1e-17 * scale;
         let small = step < 1e-10 * c.norm().max(1e-6 * scale) && step >= 0.5 * change;
-        if iteration > 0 && settled && (step <= floor || small) {
+        let settled = step <= floor || small;
+        if iteration > 0 && settled && aligned && !falls {
             return Some(Eigen {
                 c,
                 right: x,
@@ -87,6 +94,18 @@ pub fn inverse_iteration<T: Scalar>(
 fn falls<T: Scalar>(before: &[T], after: &[T]) -> bool {
     let mut pairs = before.iter().zip(after);
     pairs.any(|(b, a)| b.size() > FALLING * a.size() && a.size() > 0.0)
+}
+
+/// A vector scaled to size one.
+fn unit<T: Scalar>(x: &[T]) -> Vec<T> {
+    scaled(x, 1.0 / norm(x).max(f64::MIN_POSITIVE))
+}
+
+/// ‖b − (aᴴb) a‖, the sine of the angle between two vectors of size one.
+fn angle<T: Scalar>(a: &[T], b: &[T]) -> f64 {
+    let along = T::from_complex(dot(a, b));
+    let across: Vec<T> = a.iter().zip(b).map(|(&a, &b)| b - along * a).collect();
+    norm(&across)
 }
 
 #[cfg(test)]

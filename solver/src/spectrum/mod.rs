@@ -4,9 +4,11 @@
 //! deflated exactly before anything is computed.
 
 mod iteration;
+mod scout;
 
 pub use crate::pencil::Spectrum;
 pub use iteration::likeness;
+pub use scout::{Ground, Leader, Scout};
 
 use crate::error::{Error, Result};
 use crate::model::C64;
@@ -93,7 +95,19 @@ pub fn leading(problem: &Problem, k: f64) -> Result<EigenPair> {
 /// # Errors
 /// As [`leading`].
 pub fn nearest(problem: &Problem, k: f64, target: C64) -> Result<EigenPair> {
-    let spectrum = eigenvalues(problem, k)?;
+    nearest_in(problem, k, &eigenvalues(problem, k)?, target)
+}
+
+/// The mode nearest to a given eigenvalue, of a spectrum that is at hand.
+///
+/// # Errors
+/// As [`leading`].
+pub fn nearest_in(
+    problem: &Problem,
+    k: f64,
+    spectrum: &Spectrum,
+    target: C64,
+) -> Result<EigenPair> {
     let c = *spectrum
         .values
         .iter()
@@ -102,7 +116,7 @@ pub fn nearest(problem: &Problem, k: f64, target: C64) -> Result<EigenPair> {
     confirm(
         problem,
         k,
-        &spectrum,
+        spectrum,
         (c, arbitrary(problem.direct.layout.size)),
     )
 }

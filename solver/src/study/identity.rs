@@ -21,8 +21,8 @@ pub struct SweepIdentity {
     pub resolution: usize,
     /// The wavenumber, where it does not vary.
     pub k: Option<f64>,
-    /// Re and Im of the eigenvalue that the mode is near to.
-    pub near: Option<[f64; 2]>,
+    /// Which mode the rows hold, in words.
+    pub mode: String,
     /// Columns besides those of every sweep.
     pub columns: Vec<String>,
     /// Version of the program.
@@ -90,7 +90,7 @@ impl SweepIdentity {
                 .collect(),
             resolution: setup.resolution,
             k: sweep.k,
-            near: sweep.near.map(|c| [c.re, c.im]),
+            mode: sweep.mode.to_string(),
             columns: sweep.derived.iter().map(|d| d.name.clone()).collect(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             build: setup.build(),
@@ -139,11 +139,10 @@ impl SweepIdentity {
         for (name, value) in &self.parameters {
             parts.push((name.clone(), value.clone()));
         }
-        let near = self.near.map(|[re, im]| format!("{re},{im}"));
         parts.extend([
             text("M", self.resolution.to_string()),
             text("k", or_none(self.k.map(|k| k.to_string()))),
-            text("--near", or_none(near)),
+            text("the mode of the rows", self.mode.clone()),
             text("the list of columns", self.columns.join("; ")),
             text("the version of Landau", self.version.clone()),
             text("the build of Landau", self.build.clone()),
@@ -180,7 +179,7 @@ impl SweepIdentity {
             parameters: BTreeMap::from([("S".to_owned(), "100".to_owned())]),
             resolution: 50,
             k: None,
-            near: None,
+            mode: "leading".to_owned(),
             columns: Vec::new(),
             version: "0.1.0".to_owned(),
             build: "a".to_owned(),

@@ -166,6 +166,20 @@ impl Setup {
         Ok(setup)
     }
 
+    /// Refuses a value that a parameter does not accept.
+    ///
+    /// # Errors
+    /// A value out of the parameter's range, or not finite.
+    pub fn accepts(&self, axis: Axis, value: f64) -> Result<()> {
+        match axis {
+            Axis::Wavenumber => check_wavenumber(value),
+            Axis::Parameter(parameter) => {
+                let mut parameters = self.parameters.clone();
+                parameters.set(self.model.structure(), parameter, value)
+            }
+        }
+    }
+
     /// The base state, from a neighbouring one where that is given.
     ///
     /// # Errors

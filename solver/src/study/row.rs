@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 /// Columns of numbers after the axes.
-pub const NUMBERS: [&str; 9] = [
+pub const NUMBERS: [&str; 10] = [
     "c0_re",
     "c0_im",
     "c0_error",
@@ -16,6 +16,7 @@ pub const NUMBERS: [&str; 9] = [
     "amplitude",
     "mean_flow",
     "second_harmonic",
+    "leading_re",
 ];
 
 /// What a column of a sweep's table is.
@@ -31,13 +32,14 @@ pub fn meaning(name: &str) -> Option<&'static str> {
         "bifurcation" => "supercritical, subcritical or degenerate; pitchfork or Hopf",
         "mean_flow" => "distance of the problem for X[0;2] from singularity",
         "second_harmonic" => "distance of the problem for X[2;2] from singularity",
+        "leading_re" => "growth rate of the leading mode, whichever mode the row holds",
         "status" => "ok, or why there is no number, or what is near",
         _ => return None,
     })
 }
 
 /// Columns after the axes, as they stand in a table.
-pub(super) const COLUMNS: [&str; 11] = [
+pub(super) const COLUMNS: [&str; 12] = [
     NUMBERS[0],
     NUMBERS[1],
     NUMBERS[2],
@@ -48,6 +50,7 @@ pub(super) const COLUMNS: [&str; 11] = [
     "bifurcation",
     NUMBERS[7],
     NUMBERS[8],
+    NUMBERS[9],
     "status",
 ];
 
@@ -72,6 +75,8 @@ pub struct Row {
     pub mean_flow: Option<f64>,
     /// Of the problem at 2k.
     pub second_harmonic: Option<f64>,
+    /// Growth rate of the leading mode, in units of 1/time.
+    pub leading: Option<f64>,
     /// `ok`, or why there is no number, or what is near.
     pub status: String,
     /// The columns that were asked for besides.
@@ -143,7 +148,7 @@ impl Row {
     }
 
     /// Its numbers, in the order of [`NUMBERS`].
-    pub fn numbers(&self) -> [Option<f64>; 9] {
+    pub fn numbers(&self) -> [Option<f64>; 10] {
         let part = |c: Option<[f64; 2]>, i: usize| c.map(|c| c[i]);
         [
             part(self.c0, 0),
@@ -155,6 +160,7 @@ impl Row {
             self.amplitude,
             self.mean_flow,
             self.second_harmonic,
+            self.leading,
         ]
     }
 

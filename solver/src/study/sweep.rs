@@ -1,34 +1,33 @@
 //! Sweeps: Landau points over one or several axes, in parallel, resumable.
 //!
-//! The first axis is cut into chunks of fixed length. A chunk finds its mode from full spectra at its
-//! ends and between them (the most unstable one leads) and follows it by shape, so a row does not depend on how
-//! many threads there are, or on where an earlier run was interrupted.
+//! Rows are computed in chunks of fixed length, so the file does not depend on the number of threads or on where an
+//! earlier run was interrupted.
 
-use super::accuracy::{landau_error, stands};
+mod mode;
+mod station;
+
+pub use mode::RowMode;
+
 use super::derived::Derived;
 use super::identity::SweepIdentity;
 use super::journal::Journal;
 use super::row::{COLUMNS, Row, Table, table};
-use super::{Axis, Carried, Progress, Setup};
+use super::{Axis, Progress, Setup, check_wavenumber};
 use crate::base::BaseState;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::file::{Overwrite, destination};
-use crate::model::C64;
-use crate::problem::Problem;
-use crate::spectrum::{self, EigenPair};
-use crate::weakly::{self, Bifurcation, LandauPoint, Selection, equilibrium};
+use mode::Trace;
 use rayon::prelude::*;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-/// Points of the first axis that one worker follows.
+use station::Collocations;
+
+/// Places of the first axis that one worker computes at a time.
 const CHUNK: usize = 40;
-/// Points of a chunk at which all modes are looked at, its ends among them: between two stable ends a mode may grow.
-const SEEDS: usize = 4;
-/// A second-order problem nearer to singularity than this, relative to the slow rates, makes a row no `ok`.
-const RESONANT: f64 = 1e-3;
+
 /// Evenly spaced values along one axis.
 #[derive(Clone, Debug)]
 pub struct Range {
@@ -43,15 +42,15 @@ pub struct Range {
 /// A sweep over the product of its ranges, the first varying fastest.
 pub struct Sweep<'s> {
     /// What is swept.
-    pub setup: &'s Setup,
+    setup: &'s Setup,
     /// The first varies fastest.
-    pub ranges: Vec<Range>,
-    /// The mode at the start; the leading one otherwise.
-    pub near: Option<C64>,
+    ranges: Vec<Range>,
+    /// Which mode a row holds.
+    mode: RowMode,
     /// The wavenumber, where no range varies it.
-    pub k: Option<f64>,
+    k: Option<f64>,
     /// Columns besides those of every point.
-    pub derived: Vec<Derived>,
+    derived: Vec<Derived>,
 }
 
 /// What a run of a sweep found beside its output.
@@ -63,7 +62,56 @@ pub struct Resumed {
     pub damaged: usize,
 }
 
+impl<'s> Sweep<'s> {
+    /// A sweep over `ranges`, with the wavenumber `k` where none of them varies it.
+    ///
+    /// # Errors
+    /// No range, an empty one, two of one name, a value that its parameter does not accept, a missing wavenumber.
+    pub fn new(
+        setup: &'s Setup,
+        ranges: Vec<Range>,
+        k: Option<f64>,
+        mode: RowMode,
+        derived: Vec<Derived>,
+    ) -> Result<Self> {
+        if ranges.is_empty() {
+            return Err(Error::input("a sweep needs an axis"));
+        }
+        for (index, range) in ranges.iter().enumerate() {
+            let name = &range.name;
+            if range.values.is_empty() {
+                return Err(Error::input(format!("the axis `{name}` has no values")));
+            }
+            if ranges[..index].iter().any(|r| r.axis == range.axis) {
+                return Err(Error::input(format!("`{name}` varies twice")));
+            }
+            for &value in &range.values {
+                match range.axis {
+                    Axis::Wavenumber => check_wavenumber(value)?,
+                    axis => setup.accepts(axis, value)?,
+                }
+            }
+        }
+        if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
+            let k = k.ok_or_else(|| Error::input("no axis is k: give the wavenumber"))?;
+            check_wavenumber(k)?;
+        }
+        Ok(Sweep {
+            setup,
+            ranges,
+            mode,
+            k,
+            derived,
+        })
+    }
+}
+
 impl Sweep<'_> {
+    /// Its axes; the first varies fastest.
+    pub fn ranges(&self) -> &[Range] {
+        &self.ranges
+    }
+
     /// Number of points.
     pub fn len(&self) -> usize {
         self.ranges.iter().map(|r| r.values.len()).product()
@@ -151,11 +199,17 @@ impl Sweep<'_> {
         progress: &dyn Progress,
         record: &(dyn Fn(usize, &[Row]) + Sync),
     ) -> BTreeMap<usize, Vec<Row>> {
-        // Chunks of one line share its base state, made by whichever comes first.
+        // Chunks of one line along k share its base state, made by whichever comes first.
         let lines = self.chunk_count() / self.chunks_per_line();
         let bases: Vec<OnceLock<Result<Arc<BaseState>>>> =
             (0..lines).map(|_| OnceLock::new()).collect();
+        let collocations = |line: usize| self.collocations(line, &bases[line]);
         progress.begin(part.clone().map(|chunk| self.places(chunk).len()).sum());
+        let missing: Vec<usize> = part
+            .clone()
+            .filter(|chunk| !known.contains_key(chunk))
+            .collect();
+        let traces = self.traces(&missing, &collocations, progress);
         let chunks: BTreeMap<usize, Vec<Row>> = part
             .into_par_iter()
             .map(|chunk| {
@@ -165,14 +219,50 @@ impl Sweep<'_> {
                 }
                 // Whoever wants to stop can do so here.
                 progress.advance(0);
-                let base = &bases[chunk / self.chunks_per_line()];
-                let rows = self.chunk(chunk, base, progress);
+                let line = chunk / self.chunks_per_line();
+                let rows = self.chunk(chunk, collocations(line), traces.get(&line), progress);
                 record(chunk, &rows);
                 (chunk, rows)
             })
             .collect();
         progress.end();
         chunks
+    }
+
+    /// The collocations that a line along k shares; `None` along a parameter.
+    fn collocations(
+        &self,
+        line: usize,
+        base: &OnceLock<Result<Arc<BaseState>>>,
+    ) -> Option<Result<Arc<Collocations>>> {
+        if self.ranges[0].axis != Axis::Wavenumber {
+            return None;
+        }
+        let place = &self.places(line * self.chunks_per_line())[0];
+        Some(self.at(place).and_then(|(setup, _)| {
+            let base = base.get_or_init(|| setup.base(None));
+            let base = base.as_ref().map_err(Clone::clone)?;
+            Collocations::new(&setup, base).map(Arc::new)
+        }))
+    }
+
+    fn chunk(
+        &self,
+        chunk: usize,
+        collocations: Option<Result<Arc<Collocations>>>,
+        trace: Option<&Trace>,
+        progress: &dyn Progress,
+    ) -> Vec<Row> {
+        let places = self.places(chunk);
+        let trace = trace.map(|trace| (trace, chunk));
+        match collocations.transpose() {
+            Ok(line) => self.rows_of(&places, line.as_ref(), trace, progress),
+            Err(error) => {
+                progress.advance(places.len());
+                let failed = |place| Row::failed(place, &error, self.derived.len());
+                places.into_iter().map(failed).collect()
+            }
+        }
     }
 
     /// The places of a chunk.
@@ -191,106 +281,6 @@ impl Sweep<'_> {
             .iter()
             .map(|&x| std::iter::once(x).chain(others.iter().copied()).collect())
             .collect()
-    }
-
-    fn chunk(
-        &self,
-        chunk: usize,
-        base: &OnceLock<Result<Arc<BaseState>>>,
-        progress: &dyn Progress,
-    ) -> Vec<Row> {
-        let places = self.places(chunk);
-        if self.ranges[0].axis != Axis::Wavenumber {
-            let look = |place: &[f64]| {
-                let (setup, k) = self.at(place)?;
-                let base = setup.base(None)?;
-                let pair = weakly::select(&*setup.problem(&base)?, k, self.selection(None))?;
-                Ok((pair.c.re, Carried { base, pair }))
-            };
-            let step = |place: &[f64], near: Option<&Carried>| self.evaluate(place, near);
-            return follow(&places, look, step, self.derived.len(), progress);
-        }
-        // One base state and one set of coefficients serve the whole line.
-        let line = self.at(&places[0]).and_then(|(setup, _)| {
-            let base = base.get_or_init(|| setup.base(None));
-            let base = base.as_ref().map_err(Clone::clone)?;
-            let pairs = Collocations::new(&setup, base)?;
-            let look = |place: &[f64]| {
-                let pair = weakly::select(&pairs.own, place[0], self.selection(None))?;
-                Ok((pair.c.re, pair))
-            };
-            let step =
-                |place: &[f64], near: Option<&EigenPair>| self.row(&pairs, place, place[0], near);
-            Ok(follow(&places, look, step, self.derived.len(), progress))
-        });
-        line.unwrap_or_else(|error| {
-            progress.advance(places.len());
-            places
-                .into_iter()
-                .map(|place| Row::failed(place, &error, self.derived.len()))
-                .collect()
-        })
-    }
-
-    /// The mode that continues `near`, or the one that is asked for.
-    fn selection<'p>(&self, near: Option<&'p EigenPair>) -> Selection<'p> {
-        match (near, self.near) {
-            (Some(pair), _) => Selection::Like(pair),
-            (None, Some(target)) => Selection::Near(target),
-            (None, None) => Selection::Leading,
-        }
-    }
-
-    /// The setup and the wavenumber of a place.
-    fn at(&self, place: &[f64]) -> Result<(Setup, f64)> {
-        let mut setup = self.setup.clone();
-        let mut k = self.k.unwrap_or(0.0);
-        for (range, &value) in self.ranges.iter().zip(place) {
-            match range.axis {
-                Axis::Wavenumber => k = value,
-                axis => setup = setup.moved(axis, value)?,
-            }
-        }
-        Ok((setup, k))
-    }
-
-    /// A point whose base state is its own.
-    fn evaluate(&self, place: &[f64], near: Option<&Carried>) -> Result<(Row, Carried)> {
-        let (setup, k) = self.at(place)?;
-        let base = setup.base(near.map(|c| c.base.as_ref()))?;
-        let (row, pair) = self.row(
-            &Collocations::new(&setup, &base)?,
-            place,
-            k,
-            near.map(|c| &c.pair),
-        )?;
-        Ok((row, Carried { base, pair }))
-    }
-
-    fn row(
-        &self,
-        collocations: &Collocations,
-        place: &[f64],
-        k: f64,
-        near: Option<&EigenPair>,
-    ) -> Result<(Row, EigenPair)> {
-        let pair = weakly::select(&collocations.own, k, self.selection(near))?;
-        // Where c2 has no answer, the mode is still there to be followed.
-        let row = match weakly::from_pair(&collocations.own, pair.clone()) {
-            Ok(point) => {
-                let row = row(collocations, place, &point)?;
-                let value = |column: &Derived| column.value(&point, row.amplitude);
-                Row {
-                    derived: self.derived.iter().map(value).collect(),
-                    ..row
-                }
-            }
-            Err(error) => Row {
-                c0: Some([pair.c.re, pair.c.im]),
-                ..Row::failed(place.to_vec(), &error, self.derived.len())
-            },
-        };
-        Ok((row, pair))
     }
 
     /// What its table was computed from, by name: what stands beside it.
@@ -329,120 +319,4 @@ impl Sweep<'_> {
     pub fn identity(&self) -> SweepIdentity {
         SweepIdentity::new(self)
     }
-}
-
-/// The problem at M, and a coarser one beside which its errors show.
-struct Collocations {
-    own: Arc<Problem>,
-    coarser: Option<Arc<Problem>>,
-}
-
-impl Collocations {
-    fn new(setup: &Setup, base: &Arc<BaseState>) -> Result<Self> {
-        let coarser = setup.effective_resolution().map(|m| m - m.div_ceil(6));
-        let coarser = coarser.map(|m| Problem::new(base, Some(m)).map(Arc::new));
-        Ok(Collocations {
-            own: setup.problem(base)?,
-            coarser: coarser.transpose()?,
-        })
-    }
-
-    /// Absolute errors of c0 and c2.
-    fn errors(&self, point: &LandauPoint) -> [f64; 2] {
-        let floor = point.rounding();
-        let Some(coarser) = &self.coarser else {
-            return floor;
-        };
-        let beside = spectrum::transferred(&self.own, &point.pair, coarser)
-            .and_then(|pair| weakly::from_pair(coarser, pair));
-        match beside {
-            Ok(other) => [
-                floor[0].max((other.c0 - point.c0).norm()),
-                floor[1].max((other.c2 - point.c2).norm()),
-            ],
-            Err(_) => [f64::INFINITY; 2],
-        }
-    }
-}
-
-/// The row of a point with its errors and distances.
-fn row(collocations: &Collocations, place: &[f64], point: &LandauPoint) -> Result<Row> {
-    let [error0, error2] = collocations.errors(point);
-    let scale = point.pair.scale.max(point.c0.norm());
-    let [mean_flow, second_harmonic] = point.distances().map(|d| Some(d).filter(|d| d.is_finite()));
-    let standing = landau_error(point, error2);
-    let (good0, good2) = (stands(error0, point.c0.norm(), scale), standing.is_some());
-    let error2 = standing.unwrap_or(error2);
-    let near = |d: Option<f64>| d.is_some_and(|d| d <= RESONANT * scale);
-    let not_kept = point.multiplier_error(error2);
-    let status = if !good0 {
-        "c0 is not converged: a larger M".to_owned()
-    } else if !good2 {
-        "c2 is not converged: a larger M".to_owned()
-    } else if let Some(error) = &not_kept {
-        error.to_string()
-    } else if near(second_harmonic) {
-        "near a 2:1 resonance".to_owned()
-    } else if near(mean_flow) {
-        "near a mean-flow resonance".to_owned()
-    } else {
-        "ok".to_owned()
-    };
-    let pair = |c: C64| [c.re, c.im];
-    let finite = |error: f64| Some(error).filter(|e| e.is_finite());
-    let known = good0 && good2 && not_kept.is_none();
-    let (c0, c2) = ((point.c0, error0), (point.c2, error2));
-    Ok(Row {
-        coordinates: place.to_vec(),
-        c0: good0.then(|| pair(point.c0)),
-        c0_error: finite(error0),
-        c2: known.then(|| pair(point.c2)),
-        c2_error: finite(error2),
-        amplitude: equilibrium(c0, c2).filter(|_| known),
-        derived: Vec::new(),
-        bifurcation: match known {
-            true => Bifurcation::new(c0, c2).to_string(),
-            false => String::new(),
-        },
-        mean_flow,
-        second_harmonic,
-        status,
-    })
-}
-
-/// Rows of a chunk: the mode that is most unstable at one of its seeds, which `look` finds, followed from there to both
-/// ends by `step`.
-fn follow<C: Clone>(
-    places: &[Vec<f64>],
-    look: impl Fn(&[f64]) -> Result<(f64, C)>,
-    step: impl Fn(&[f64], Option<&C>) -> Result<(Row, C)>,
-    derived: usize,
-    progress: &dyn Progress,
-) -> Vec<Row> {
-    let last = places.len() - 1;
-    let mut seeds: Vec<usize> = (0..SEEDS).map(|i| i * last / (SEEDS - 1)).collect();
-    seeds.dedup();
-    let found = seeds
-        .into_iter()
-        .filter_map(|i| Some((i, look(&places[i]).ok()?)));
-    // Of equal ones the first.
-    let best = found.reduce(|best, next| if next.1.0 > best.1.0 { next } else { best });
-    let (start, seed) = best.map_or((0, None), |(start, (_, seed))| (start, Some(seed)));
-    let mut rows: Vec<Option<Row>> = vec![None; places.len()];
-    let upwards: &mut dyn Iterator<Item = usize> = &mut (start..places.len());
-    let downwards: &mut dyn Iterator<Item = usize> = &mut (0..start).rev();
-    for way in [upwards, downwards] {
-        let mut near = seed.clone();
-        for index in way {
-            rows[index] = Some(match step(&places[index], near.as_ref()) {
-                Ok((row, next)) => {
-                    near = Some(next);
-                    row
-                }
-                Err(error) => Row::failed(places[index].clone(), &error, derived),
-            });
-            progress.advance(1);
-        }
-    }
-    rows.into_iter().flatten().collect()
 }

@@ -59,7 +59,7 @@ def rows(table: Path, axes: int, columns: list[str]) -> list[dict[str, Any]]:
         return [float(row[f"{name}_re"]), float(row[f"{name}_im"])] if row[f"{name}_re"] else None
 
     def parsed(row: dict[str, str]) -> dict[str, Any]:
-        plain = ("c0_error", "c2_error", "amplitude", "mean_flow", "second_harmonic")
+        plain = ("c0_error", "c2_error", "amplitude", "mean_flow", "second_harmonic", "leading_re")
         return {
             "place": [float(x) for x in list(row.values())[:axes]],
             "c0": pair(row, "c0"),

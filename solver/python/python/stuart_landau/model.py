@@ -187,6 +187,7 @@ class Model:
         out: str | os.PathLike[str] | None = None,
         k: float | Sequence[float] | None = None,
         near: complex | None = None,
+        follow: bool = False,
         M: int = 50,
         columns: Sequence[str] = (),
         cluster: Any = None,
@@ -196,7 +197,10 @@ class Model:
         set: Mapping[str, Any] | None = None,
         **parameters: Any,
     ) -> Sweep:
-        """Landau points over the product of all keywords that are sequences; the first one is followed.
+        """Landau points over the product of all keywords that are sequences; the first one varies fastest.
+
+        Each row holds the leading mode of its place, or the one nearest to `near`. With `follow` one mode is followed along the
+        first axis, from where the leading growth rate is largest. `leading_re` is the leading growth rate in every row.
 
         With `out`, a CSV file, an interrupted sweep leaves a journal beside it and goes on from there; a file that is no
         table of this sweep is replaced with `force` alone. With `cluster`, a
@@ -216,13 +220,15 @@ class Model:
         if cluster is not None:
             if target is None:
                 raise InputError("a sweep on a cluster needs out, a file that all workers see")
-            assignment = (self._set(None, fixed), M, axes, number, _near(near), list(columns))
+            assignment = (self._set(None, fixed), M, axes, number, _near(near), follow, list(columns))
             path = Path(target).resolve()
             distributed.run(cluster, self, assignment, path, tasks, cpus, force)
             rows = distributed.rows(path, len(axes), list(columns))
         else:
             rows = json.loads(
-                self._core.sweep(self._set(None, fixed), M, axes, number, _near(near), list(columns), target, force)
+                self._core.sweep(
+                    self._set(None, fixed), M, axes, number, _near(near), follow, list(columns), target, force
+                )
             )
         varying = [name for name, _ in axes]
         defaults = {name: info["default"] for name, info in self.parameters.items() if name not in varying}

@@ -393,7 +393,7 @@ class Sweep(Result):
     """Landau points over a product of axes. `axes`: values by name; columns as arrays of that shape, the first axis
     first; what has no value is nan, and `status` says why. `derived`: the columns that were asked for, by their text."""
 
-    columns = ("c0", "c0_error", "c2", "c2_error", "amplitude", "mean_flow", "second_harmonic")
+    columns = ("c0", "c0_error", "c2", "c2_error", "amplitude", "mean_flow", "second_harmonic", "leading_re")
 
     def __init__(
         self,

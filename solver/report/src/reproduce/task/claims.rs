@@ -13,6 +13,7 @@ use landau_solver::base::BaseState;
 use landau_solver::error::{Error, Result};
 use landau_solver::study::Setup;
 use landau_solver::study::row::{Column, column};
+use landau_solver::study::sweep::RowMode;
 use landau_solver::weakly::Selection;
 use std::sync::Arc;
 
@@ -53,7 +54,7 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
     let k = k.ok_or_else(missing)?;
     if statement.quantity == Quantity::A0 {
         // Growth rates converge where c2 does not yet.
-        let row = rows(&setup, None, "k", vec![k], &[])?.remove(0);
+        let row = rows(&setup, None, "k", vec![k], RowMode::Leading, &[])?.remove(0);
         let c0 = row.c0.ok_or_else(|| Error::computation(row.status))?;
         return Ok((c0[0], row.c0_error.unwrap_or(f64::INFINITY)));
     }
@@ -111,7 +112,14 @@ fn where_largest(
 ) -> Result<Value> {
     let missing = || Error::input("a statement about a largest value needs `over`: an axis");
     let over = statement.over.as_ref().ok_or_else(missing)?;
-    let rows = rows(setup, case.k, &over.name, over.values(), &[])?;
+    let rows = rows(
+        setup,
+        case.k,
+        &over.name,
+        over.values(),
+        RowMode::Leading,
+        &[],
+    )?;
     let mut points = column(&rows, quantity);
     points.retain(|p| p.1.is_finite());
     let (places, values): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();

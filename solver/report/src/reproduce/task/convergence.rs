@@ -10,6 +10,7 @@ use super::rows::{nothing_in, rows};
 use crate::figure::{Panel, Style};
 use landau_solver::error::Result;
 use landau_solver::study::row::{Column, Row, column};
+use landau_solver::study::sweep::RowMode;
 
 /// a0 over k at several M, and how far a0 and a2 are from those of the last M.
 pub(super) fn convergence(
@@ -23,7 +24,14 @@ pub(super) fn convergence(
     let all = at_each(cases, resolutions);
     let found = each(&all, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
-        rows(&setup, case.k, &over.name, over.values(), &[])
+        rows(
+            &setup,
+            case.k,
+            &over.name,
+            over.values(),
+            RowMode::Followed(None),
+            &[],
+        )
     })?;
     let mut table = Table::new(&["case", &over.name, "M", "a0", "a2", "a0 error", "a2 error"])
         .with_words(&["label", "status"]);

@@ -13,6 +13,7 @@ use landau_solver::error::{Error, Result};
 use landau_solver::study::Silent;
 use landau_solver::study::critical::{self, Critical};
 use landau_solver::study::row::{Column, NUMBERS, Row, column};
+use landau_solver::study::sweep::RowMode;
 use rayon::prelude::*;
 
 /// The critical points that are to be marked: those of the first case. They are numbers too, and so are those of any
@@ -95,6 +96,7 @@ pub(super) struct Wanted<'a> {
     pub figure: &'a str,
     pub over: &'a Axis,
     pub columns: &'a [Together],
+    pub mode: RowMode,
     pub marks: &'a [Asked],
     pub logarithmic: [bool; 2],
     pub reference: &'a [Reference],
@@ -125,6 +127,7 @@ pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<
     let Wanted {
         over,
         columns,
+        mode,
         marks,
         ..
     } = *wanted;
@@ -133,7 +136,7 @@ pub(super) fn sweep(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
-        rows(&setup, case.k, &over.name, over.values(), &derived)
+        rows(&setup, case.k, &over.name, over.values(), mode, &derived)
     })?;
     let printed = printed(&cases[0], marks);
     let marks = marked(shop, wanted.figure, cases, marks, &mut outcome)?;
@@ -253,9 +256,10 @@ pub(super) fn resonance(
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let (setup, values) = (shop.setup(case)?, over.values());
+        let followed = RowMode::Followed(None);
         let doubled = values.iter().map(|k| 2.0 * k).collect();
-        let one = rows(&setup, None, "k", values, &[])?;
-        Ok((one, rows(&setup, None, "k", doubled, &[])?))
+        let one = rows(&setup, None, "k", values, followed, &[])?;
+        Ok((one, rows(&setup, None, "k", doubled, followed, &[])?))
     })?;
     let mut panel = Panel::new("2:1 resonance", "k", "a0");
     for (asked, point) in marked(shop, figure, cases, marks, &mut outcome)? {
@@ -304,7 +308,7 @@ pub(super) fn power_law(
             .collect();
         let values = relative.iter().map(|d| place * (1.0 + d)).collect();
         let k = asked.k.or(case.k);
-        let rows = rows(&setup, k, &asked.vary, values, &[])?;
+        let rows = rows(&setup, k, &asked.vary, values, RowMode::Leading, &[])?;
         let points: Vec<(f64, f64)> = relative
             .iter()
             .zip(&rows)

@@ -15,6 +15,7 @@ use super::outcome::Outcome;
 use super::study::{Case, Task};
 use super::workshop::Workshop;
 use landau_solver::error::{Error, Result};
+use landau_solver::study::sweep::RowMode;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
@@ -102,6 +103,7 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             case,
             over,
             columns,
+            follow,
             mark,
             logarithmic,
             reference,
@@ -111,6 +113,11 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
                 figure,
                 over,
                 columns,
+                mode: if *follow {
+                    RowMode::Followed(None)
+                } else {
+                    RowMode::Leading
+                },
                 marks: mark,
                 logarithmic: *logarithmic,
                 reference,

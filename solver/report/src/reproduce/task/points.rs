@@ -11,6 +11,7 @@ use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
 use landau_solver::study::critical::{self, Critical, Quantity, Question};
 use landau_solver::study::minimise;
+use landau_solver::study::sweep::RowMode;
 use landau_solver::study::{self, Setup, Silent};
 
 /// The question of a study file for one case.
@@ -166,7 +167,7 @@ type Answer = std::result::Result<(f64, Option<f64>), String>;
 fn landau_point(setup: &Setup, k: f64, columns: &[String]) -> Result<Vec<Answer>> {
     let none = || "no equilibrium at cubic order".to_owned();
     // The row answers for what the point leaves open: where c2 is not converged, a0 may be.
-    let row = rows(setup, None, "k", vec![k], columns)?.remove(0);
+    let row = rows(setup, None, "k", vec![k], RowMode::Leading, columns)?.remove(0);
     let mut answers: Vec<Answer> = match Coefficients::at(setup, k) {
         Ok(point) => vec![
             Ok((point.c0.re, Some(point.error.c0))),

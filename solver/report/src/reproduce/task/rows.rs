@@ -6,7 +6,7 @@ use landau_solver::error::{Error, Result};
 use landau_solver::model::C64;
 use landau_solver::study::accuracy::{Accuracy, accuracy, landau_error, stands};
 use landau_solver::study::row::Row;
-use landau_solver::study::sweep::{Range, Sweep};
+use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::{self, Setup, Silent};
 use landau_solver::weakly::{Selection, equilibrium};
 
@@ -67,6 +67,7 @@ pub(super) fn rows(
     k: Option<f64>,
     name: &str,
     values: Vec<f64>,
+    mode: RowMode,
     columns: &[String],
 ) -> Result<Vec<Row>> {
     let axis = study::Axis::named(setup.model.as_ref(), name)?;
@@ -75,15 +76,9 @@ pub(super) fn rows(
         axis,
         values,
     };
-    let sweep = Sweep {
-        setup,
-        ranges: vec![range],
-        near: None,
-        k,
-        derived: columns
-            .iter()
-            .map(|text| column(setup.model.as_ref(), text))
-            .collect::<Result<_>>()?,
-    };
-    Ok(sweep.run(&Silent))
+    let derived = columns
+        .iter()
+        .map(|text| column(setup.model.as_ref(), text))
+        .collect::<Result<_>>()?;
+    Ok(Sweep::new(setup, vec![range], k, mode, derived)?.run(&Silent))
 }
