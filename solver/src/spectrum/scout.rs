@@ -1,12 +1,14 @@
 //! The leading mode at many neighbouring places, without a full spectrum at each of them.
 //!
-//! Eigenvalues on a coarser collocation cost a tenth of those at M. Ordered by growth rate, the j-th of M exceeds the j-th of the
-//! coarser collocation by some amount e_j. The scout measures e_j at a few places, its gauges, where both spectra are computed.
-//! Elsewhere it refines the coarse leading eigenvalue at M and accepts the result only if
+//! Eigenvalues on a coarser collocation cost a tenth of those at M. Order both spectra by growth rate. The j-th of M exceeds the j-th
+//! of the coarser collocation by e_j, a continuous function of the place. The scout measures e_j at a few places, its gauges, where it
+//! computes both spectra. Between two gauges it refines the coarse leading eigenvalue at M and accepts the result c only if
 //!
-//! Re c_j(coarse) + 4 max(e_j, |c − c_1(coarse)|) < Re c
+//! Re c_2(coarse) + E_2 < Re c, with E_j = max e_j + 3 |e_j − e_j'| + e_j/10 over the two gauges.
 //!
-//! for every other eigenvalue c_j. If a single one might be larger, the full spectrum at M decides.
+//! The second growth rate at M then lies below Re c, and so do all that follow it. The third is tested too: it tells of modes that
+//! turn up between gauges.
+//! Otherwise the full spectrum at M decides.
 
 use super::iteration::{continued, refine};
 use super::{EigenPair, arbitrary, confirm, eigenvalues, no_modes};
@@ -16,12 +18,17 @@ use crate::numerics::beside;
 use crate::pencil::Spectrum;
 use crate::problem::Problem;
 
-/// Eigenvalues, by decreasing growth rate, whose excess is measured one by one.
-const RANKS: usize = 40;
-/// Excess at a place over the largest excess at the gauges that is allowed for.
-const SAFETY: f64 = 4.0;
+/// Eigenvalues, by decreasing growth rate, whose excess is measured.
+const RANKS: usize = 4;
+/// Those below the first that are tested.
+const TESTED: usize = 2;
+/// Part of the excess, and of its change between two gauges, that is allowed for besides.
+const PART: f64 = 0.1;
+const CHANGE: f64 = 3.0;
 /// The least excess, relative to the slow eigenvalues: two modes that are closer are told apart by the full spectrum.
 const LEAST: f64 = 1e-6;
+/// M over the resolution of the scout.
+const COARSER: usize = 3;
 /// Unknowns below which a full spectrum costs no more than scouting does.
 const SMALL: usize = 48;
 
@@ -42,49 +49,71 @@ pub struct Ground<'p> {
     pub coarse: Option<&'p Problem>,
 }
 
-/// Finds leading modes near the places where it was gauged.
+/// What one gauge shows.
+#[derive(Clone, Debug)]
+struct Gauge {
+    /// Its number along the places.
+    index: usize,
+    /// e_j, in units of eigenvalues.
+    excess: Vec<f64>,
+}
+
+/// Finds leading modes between the places where it was gauged.
 #[derive(Clone, Debug, Default)]
 pub struct Scout {
-    /// e_j, in units of eigenvalues; empty before the first gauge.
-    excess: Vec<f64>,
+    /// By increasing index.
+    gauges: Vec<Gauge>,
 }
 
 impl Scout {
     /// The resolution to scout with, for a problem of `size` unknowns at resolution M.
     pub fn resolution(m: usize, size: usize) -> Option<usize> {
-        (size > SMALL).then_some(m / 2)
+        (size > SMALL).then_some(m / COARSER)
     }
 
-    /// The leading mode by the full spectrum, as [`super::leading`] computes it; learns by how much it exceeds the coarse one.
+    /// The leading mode of the `index`-th place by its full spectrum, as [`super::leading`] computes it. Places are gauged in order.
     ///
     /// # Errors
     /// A spectrum that cannot be computed.
-    pub fn gauge(&mut self, ground: Ground, k: f64) -> Result<Leader> {
+    pub fn gauge(&mut self, ground: Ground, k: f64, index: usize) -> Result<Leader> {
         let spectrum = eigenvalues(ground.fine, k)?;
         if let Some(Ok(coarse)) = ground.coarse.map(|coarse| eigenvalues(coarse, k)) {
-            self.learn(&spectrum, &coarse);
+            self.learn(index, &spectrum, &coarse);
         }
         leader(ground.fine, k, &spectrum)
     }
 
-    /// Raises the excess of every rank to what two spectra of one place show.
-    fn learn(&mut self, fine: &Spectrum, coarse: &Spectrum) {
-        self.excess.resize(RANKS, 0.0);
-        let mut largest = 0.0_f64;
-        let pairs = fine.values.iter().zip(&coarse.values);
-        for (excess, (f, c)) in self.excess.iter_mut().zip(pairs) {
-            // A high rank is resolved no better than a low one.
-            largest = largest.max(f.re - c.re).max(*excess);
-            *excess = largest;
-        }
+    /// Keeps by how much each rank of one spectrum exceeds that of the other.
+    fn learn(&mut self, index: usize, fine: &Spectrum, coarse: &Spectrum) {
+        let pairs = fine.values.iter().zip(&coarse.values).take(RANKS);
+        let excess = pairs.map(|(f, c)| (f.re - c.re).max(0.0)).collect();
+        self.gauges.push(Gauge { index, excess });
+    }
+
+    /// E_j at a place: infinite outside of the gauges.
+    fn allowance(&self, index: usize, rank: usize) -> f64 {
+        let after = self.gauges.partition_point(|gauge| gauge.index < index);
+        let around = [after.checked_sub(1), Some(after)].map(|i| self.gauges.get(i?));
+        let [Some(before), Some(after)] = around else {
+            return f64::INFINITY;
+        };
+        let [a, b] =
+            [before, after].map(|gauge| gauge.excess.get(rank).copied().unwrap_or(f64::INFINITY));
+        (1.0 + PART) * a.max(b) + CHANGE * (a - b).abs()
     }
 
     /// The leading mode at a place, from that of a neighbouring place where there is one.
     ///
     /// # Errors
     /// A spectrum that cannot be computed.
-    pub fn leading(&self, ground: Ground, k: f64, near: Option<&EigenPair>) -> Result<Leader> {
-        if let Some(pair) = self.scouted(ground, k, near) {
+    pub fn leading(
+        &self,
+        ground: Ground,
+        k: f64,
+        index: usize,
+        near: Option<&EigenPair>,
+    ) -> Result<Leader> {
+        if let Some(pair) = self.scouted(ground, k, index, near) {
             return Ok(Leader {
                 value: pair.c,
                 pair: Ok(pair),
@@ -94,18 +123,24 @@ impl Scout {
     }
 
     /// The leading mode, if the coarse spectrum leaves no doubt about it.
-    fn scouted(&self, ground: Ground, k: f64, near: Option<&EigenPair>) -> Option<EigenPair> {
-        let coarse = ground.coarse.filter(|_| !self.excess.is_empty())?;
+    fn scouted(
+        &self,
+        ground: Ground,
+        k: f64,
+        index: usize,
+        near: Option<&EigenPair>,
+    ) -> Option<EigenPair> {
+        let coarse = ground.coarse.filter(|_| self.gauges.len() > 1)?;
         let spectrum = eigenvalues(coarse, k).ok()?;
         let top = *spectrum.values.first()?;
-        if !self.leads(top, &spectrum) {
+        if !self.leads(top, &spectrum, index) {
             return None;
         }
         let near = near.filter(|n| n.right.len() == ground.fine.direct.layout.size);
         let follows = near.and_then(|near| continued(ground.fine, k, near));
         let accepted = |pair: &EigenPair| {
             let oriented = !ground.fine.is_real() || pair.c.im >= 0.0;
-            oriented && self.leads(pair.c, &spectrum)
+            oriented && self.leads(pair.c, &spectrum, index)
         };
         follows.filter(accepted).or_else(|| {
             let scale = match near {
@@ -119,21 +154,16 @@ impl Scout {
     }
 
     /// Whether an eigenvalue at M that belongs to the first one of a coarse spectrum must be the leading one at M.
-    fn leads(&self, c: C64, coarse: &Spectrum) -> bool {
+    fn leads(&self, c: C64, coarse: &Spectrum, index: usize) -> bool {
         let top = coarse.values[0];
-        let shift = (c - top).norm();
-        let least = LEAST * coarse.scale();
-        let last = self.excess.last().copied().unwrap_or(f64::INFINITY);
-        let others = coarse.values.iter().enumerate().skip(1);
+        let least = (c - top).norm().max(LEAST * coarse.scale());
         // Its complex conjugate grows at the same rate.
-        let is_conjugate =
-            |(rank, v): &(usize, &C64)| *rank == 1 && c.im != 0.0 && **v == top.conj();
+        let has_conjugate = c.im != 0.0 && coarse.values.get(1) == Some(&top.conj());
+        let others = coarse.values.iter().enumerate();
         others
-            .filter(|other| !is_conjugate(other))
-            .all(|(rank, v)| {
-                let excess = self.excess.get(rank).copied().unwrap_or(last);
-                v.re + SAFETY * excess.max(shift).max(least) < c.re
-            })
+            .skip(if has_conjugate { 2 } else { 1 })
+            .take(TESTED)
+            .all(|(rank, v)| v.re + least.max(self.allowance(index, rank)) < c.re)
     }
 }
 
@@ -155,15 +185,26 @@ mod tests {
         Spectrum::new(values.iter().map(|&re| C64::new(re, 0.0)).collect())
     }
 
-    /// A second mode that a coarse collocation damps too much by 0.3 leaves a doubt while the distance is below four times that.
+    /// A second mode that the coarse collocation damps too much by 0.3 at one gauge and by 0.4 at the other leaves a doubt while it
+    /// is less than 0.44 + 0.3 below the first.
     #[test]
     fn an_excess_that_was_seen_is_allowed_for() {
         let mut scout = Scout::default();
-        scout.learn(&spectrum(&[1.0, -0.2, -2.0]), &spectrum(&[1.0, -0.5, -2.0]));
+        scout.learn(
+            0,
+            &spectrum(&[1.0, -0.2, -2.0]),
+            &spectrum(&[1.0, -0.5, -2.0]),
+        );
+        scout.learn(
+            9,
+            &spectrum(&[1.0, -0.1, -2.0]),
+            &spectrum(&[1.0, -0.5, -2.0]),
+        );
         let c = |re: f64| C64::new(re, 0.0);
-        assert!(scout.leads(c(1.0), &spectrum(&[1.0, -0.5, -2.0])));
-        assert!(!scout.leads(c(0.5), &spectrum(&[0.5, -0.5, -2.0])));
-        // Its own shift between the two collocations counts too.
-        assert!(!scout.leads(c(0.6), &spectrum(&[1.0, -0.5, -2.0])));
+        assert!(scout.leads(c(0.25), &spectrum(&[0.25, -0.5, -2.0]), 4));
+        assert!(!scout.leads(c(0.2), &spectrum(&[0.2, -0.5, -2.0]), 4));
+        // Its own shift between the two collocations counts too, and nothing is accepted outside of the gauges.
+        assert!(!scout.leads(c(0.25), &spectrum(&[1.1, -0.5, -2.0]), 4));
+        assert!(!scout.leads(c(0.25), &spectrum(&[0.25, -0.5, -2.0]), 10));
     }
 }

@@ -126,7 +126,7 @@ impl Sweep<'_> {
         for index in gauges(places.len()) {
             let station = self.station(&places[index], line, None);
             let gauge = station.and_then(|station| {
-                let leader = scout.gauge(station.collocations.ground(), station.k)?;
+                let leader = scout.gauge(station.collocations.ground(), station.k, index)?;
                 Ok((station, leader))
             });
             gauged.insert(index, gauge);
@@ -138,7 +138,7 @@ impl Sweep<'_> {
                 let station = self.station(place, line, near.as_ref().map(|n| &n.0))?;
                 let neighbour = near.as_ref().map(|n| &n.1);
                 let ground = station.collocations.ground();
-                let leader = scout.leading(ground, station.k, neighbour)?;
+                let leader = scout.leading(ground, station.k, index, neighbour)?;
                 Ok((station, leader))
             });
             let choice = found.map(|(station, leader)| {
