@@ -307,6 +307,7 @@ impl Core {
         axes: Vec<(String, Vec<f64>)>,
         k: Option<f64>,
         near: Near,
+        follow: bool,
         columns: Vec<String>,
         out: PathBuf,
         force: bool,
@@ -314,7 +315,7 @@ impl Core {
         let model = self.model.clone();
         watched(py, move |_| {
             let setup = setup(model, &set, resolution)?;
-            let sweep = swept(&setup, axes, k, near, &columns)?;
+            let sweep = swept(&setup, axes, k, row_mode(near, follow), &columns)?;
             table::check(&out, &sweep.identity(), Overwrite::forced(force)).map(|_| ())
         })
     }

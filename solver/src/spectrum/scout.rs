@@ -171,9 +171,11 @@ impl Scout {
 fn leader(problem: &Problem, k: f64, spectrum: &Spectrum) -> Result<Leader> {
     let value = *spectrum.values.first().ok_or_else(no_modes)?;
     let start = arbitrary(problem.direct.layout.size);
+    let pair = confirm(problem, k, spectrum, (value, start));
     Ok(Leader {
-        value,
-        pair: confirm(problem, k, spectrum, (value, start)),
+        // Inverse iteration knows the eigenvalue better than the full spectrum does.
+        value: pair.as_ref().map_or(value, |pair| pair.c),
+        pair,
     })
 }
 

@@ -42,15 +42,15 @@ pub struct Range {
 /// A sweep over the product of its ranges, the first varying fastest.
 pub struct Sweep<'s> {
     /// What is swept.
-    setup: &'s Setup,
+    pub(super) setup: &'s Setup,
     /// The first varies fastest.
-    ranges: Vec<Range>,
+    pub(super) ranges: Vec<Range>,
     /// Which mode a row holds.
-    mode: RowMode,
+    pub(super) mode: RowMode,
     /// The wavenumber, where no range varies it.
-    k: Option<f64>,
+    pub(super) k: Option<f64>,
     /// Columns besides those of every point.
-    derived: Vec<Derived>,
+    pub(super) derived: Vec<Derived>,
 }
 
 /// What a run of a sweep found beside its output.

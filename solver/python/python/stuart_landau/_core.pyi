@@ -57,6 +57,7 @@ class Core:
         axes: list[tuple[str, list[float]]],
         k: float | None,
         near: Near,
+        follow: bool,
         columns: list[str],
         out: str,
         force: bool,
