@@ -107,7 +107,6 @@ fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outc
             mark,
             logarithmic,
             reference,
-            ..
         } => {
             let wanted = curves::Wanted {
                 figure,
