@@ -218,6 +218,10 @@ pub struct CriticalOptions {
     /// The extremum over a range of k.
     #[arg(long, value_name = "k=A:B")]
     pub minimize: Option<String>,
+    /// Follow one mode by its shape: the one that grows fastest on the axis, or with --near the one named there; by
+    /// default every place has its leading mode.
+    #[arg(long)]
+    pub follow: bool,
     /// A picture of the quantity over the range, and where it vanishes; with --minimize, of the growth rate over k.
     #[arg(long, value_name = "FILE.svg|png")]
     pub plot: Option<PathBuf>,

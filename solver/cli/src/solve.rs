@@ -10,16 +10,15 @@ use landau_report::figure;
 use landau_report::library::column;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::Overwrite;
+use landau_solver::measured::Measured;
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
-use landau_solver::study::critical::{Quantity, Question};
-use landau_solver::study::minimise::minimise;
-use landau_solver::study::onset::CriticalReport;
+use landau_solver::study::critical::{CriticalReport, Quantity, Question, Request, Tracking};
 use landau_solver::study::point::PointReport;
 use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::verify::Certificate;
-use landau_solver::study::{Axis, Setup, check_wavenumber, critical as criticality, journal_path};
+use landau_solver::study::{Axis, Setup, check_wavenumber, journal_path};
 use landau_solver::words;
 use serde_json::json;
 
@@ -85,92 +84,53 @@ pub fn amplitudes(
 }
 
 pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Result<()> {
-    let axis = Axis::named(setup.model.as_ref(), &options.vary)?;
-    if !(options.from.is_finite() && options.to.is_finite()) || options.from == options.to {
-        return Err(Error::input("--from and --to accept two different numbers"));
-    }
-    for value in [options.from, options.to] {
-        if axis == Axis::Wavenumber {
-            check_wavenumber(value)?;
-        }
-        setup.moved(axis, value)?;
-    }
-    let range_of_k = match &options.minimize {
-        Some(text) => {
-            let (name, bounds) = range("--minimize", text, 2).map_err(Error::Input)?;
-            if name != "k" || axis == Axis::Wavenumber || bounds[0] >= bounds[1] {
-                return Err(Error::input(format!(
-                    "--minimize {text}: it accepts k=A:B with A < B, for a parameter that varies"
-                )));
-            }
-            check_wavenumber(bounds[0])?;
-            Some((bounds[0], bounds[1]))
-        }
-        None => None,
-    };
-    if axis != Axis::Wavenumber && options.k.is_none() && range_of_k.is_none() {
-        return Err(Error::input(format!(
-            "--vary {}: give the wavenumber with --k, or a range with --minimize k=A:B",
-            options.vary
-        )));
-    }
-    if range_of_k.is_some() && options.of != Of::Growth {
-        return Err(Error::input("--minimize goes with --of growth"));
-    }
-    if let Some(k) = options.k {
-        check_wavenumber(k)?;
-    }
-    let quantity = match options.of {
-        Of::Growth => Quantity::Growth,
-        Of::C2 => Quantity::C2,
-        Of::Resonance => Quantity::Resonance,
-    };
-    let symbol = quantity.symbol();
-    let (from, to, k) = (options.from, options.to, options.k);
-    let question = Question {
-        axis,
-        from,
-        to,
-        quantity,
-        k,
-        near: common.near,
-    };
     let overwrite = Overwrite::forced(options.force);
     outputs::check_picture(options.plot.as_deref())?;
     outputs::check(options.plot.as_deref(), overwrite)?;
-    let bar = Bar::new("scanning");
-    let found = match range_of_k {
-        Some(bounds) => {
-            let extremum = minimise(setup, question, bounds, &bar)?;
-            CriticalReport::at_extremum(setup, &question, extremum)?
-        }
-        None => {
-            let scan = criticality::scan(setup, question, &bar)?;
-            picture::drawn(options.plot.as_deref(), || {
-                figure::critical(&setup.model.structure().title, &options.vary, symbol, &scan)
-            })?;
-            CriticalReport::new(setup, &question, scan.critical(&question)?)?
-        }
+    let range_of_k = |text: &String| match range("--minimize", text, 2).map_err(Error::Input)? {
+        (name, bounds) if name == "k" => Ok([bounds[0], bounds[1]]),
+        _ => Err(Error::input(format!(
+            "--minimize {text}: it accepts k=A:B with A < B, for a parameter that varies"
+        ))),
     };
+    let request = Request {
+        vary: &options.vary,
+        between: [options.from, options.to],
+        of: match options.of {
+            Of::Growth => Quantity::Growth,
+            Of::C2 => Quantity::C2,
+            Of::Resonance => Quantity::Resonance,
+        },
+        k: options.k,
+        minimize: options.minimize.as_ref().map(range_of_k).transpose()?,
+        tracking: match (common.near, options.follow) {
+            (Some(target), _) => Tracking::Near(target),
+            (None, true) => Tracking::Fastest,
+            (None, false) => Tracking::Leading,
+        },
+    };
+    let question = Question::new(setup, &request)?;
+    let bar = Bar::new("scanning");
+    let found = CriticalReport::compute(setup, &question, &bar)?;
     let (first, others) = (&found.found[0], &found.found[1..]);
-    if let (Some(plot), Some((from, to))) = (&options.plot, range_of_k) {
-        let at_extremum = setup.moved(axis, first.value)?;
-        let over_k = Question {
-            axis: Axis::Wavenumber,
-            from,
-            to,
-            k: None,
-            near: Some(first.c0),
-            ..question
-        };
-        let scan = criticality::scan(&at_extremum, over_k, &bar)?;
-        picture::drawn(Some(plot), || {
-            let title = format!("{} = {}", options.vary, words::short(first.value));
-            figure::critical(&title, "k", symbol, &scan)
+    if let Some(plot) = &options.plot {
+        let curve = found.curve(setup, &question, &bar)?;
+        let symbol = request.of.symbol();
+        picture::drawn(Some(plot), || match request.minimize {
+            None => {
+                let title = &setup.model.structure().title;
+                figure::critical(title, &options.vary, symbol, &curve)
+            }
+            Some(_) => {
+                let title = format!("{} = {}", options.vary, words::short(first.value));
+                figure::critical(&title, "k", symbol, &curve)
+            }
         })?;
     }
     if !others.is_empty() {
-        let others: Vec<String> = others.iter().map(|c| format!("{:.8}", c.value)).collect();
+        let others = others.iter();
+        let others = others.map(|c| Measured::new(c.value, c.error).to_string());
+        let others: Vec<String> = others.collect();
         note!(
             "note: further points in the interval: {}",
             others.join(", ")

@@ -9,10 +9,8 @@ use landau_solver::file::Overwrite;
 use landau_solver::model::{C64, Model};
 use landau_solver::study::accuracy::Converged;
 use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
-use landau_solver::study::critical::{self, Quantity, Question};
-use landau_solver::study::minimise::minimise;
+use landau_solver::study::critical::{CriticalReport, Quantity, Question, Request, Tracking};
 use landau_solver::study::modes::Modes;
-use landau_solver::study::onset::CriticalReport;
 use landau_solver::study::point::PointReport;
 use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::row::Row;
@@ -228,40 +226,25 @@ impl Core {
         k: Option<f64>,
         minimize: Option<(f64, f64)>,
         near: Near,
+        follow: bool,
     ) -> PyResult<String> {
         let model = self.model.clone();
         watched(py, move |watch| {
             let setup = setup(model, &set, resolution)?;
-            let axis = Axis::named(setup.model.as_ref(), &vary)?;
-            let (from, to) = between;
-            for value in [from, to] {
-                if axis == Axis::Wavenumber {
-                    check_wavenumber(value)?;
-                }
-                setup.moved(axis, value)?;
-            }
-            if axis != Axis::Wavenumber && minimize.is_none() {
-                let missing = || Error::input("give the wavenumber k, or a range with minimize");
-                check_wavenumber(k.ok_or_else(missing)?)?;
-            }
-            let question = Question {
-                axis,
-                from,
-                to,
-                quantity: quantity(&of)?,
+            let request = Request {
+                vary: &vary,
+                between: between.into(),
+                of: quantity(&of)?,
                 k,
-                near: near.map(|(re, im)| C64::new(re, im)),
+                minimize: minimize.map(Into::into),
+                tracking: match (near, follow) {
+                    (Some((re, im)), _) => Tracking::Near(C64::new(re, im)),
+                    (None, true) => Tracking::Fastest,
+                    (None, false) => Tracking::Leading,
+                },
             };
-            let found = match minimize {
-                Some(range) => {
-                    let extremum = minimise(&setup, question, range, watch)?;
-                    CriticalReport::at_extremum(&setup, &question, extremum)?
-                }
-                None => {
-                    let found = critical::critical(&setup, question, watch)?;
-                    CriticalReport::new(&setup, &question, found)?
-                }
-            };
+            let question = Question::new(&setup, &request)?;
+            let found = CriticalReport::compute(&setup, &question, watch)?;
             let points = found.found.iter().map(|point| found.json(point));
             Ok(points.collect::<Value>().to_string())
         })

@@ -11,7 +11,6 @@ mod journal;
 use bases::Bases;
 pub use journal::journal_path;
 pub use progress::{Progress, Silent};
-pub mod minimise;
 pub mod modes;
 pub mod onset;
 pub mod orders;

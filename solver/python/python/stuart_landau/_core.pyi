@@ -37,6 +37,7 @@ class Core:
         k: float | None,
         minimize: tuple[float, float] | None,
         near: Near,
+        follow: bool,
     ) -> str: ...
     def sweep(
         self,

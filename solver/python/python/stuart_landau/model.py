@@ -173,12 +173,17 @@ class Model:
         k: float | None = None,
         minimize: tuple[float, float] | None = None,
         near: complex | None = None,
+        follow: bool = False,
         M: int = 50,
         set: Mapping[str, Value] | None = None,
         **parameters: Value,
     ) -> Critical:
-        """Where growth or c2 changes sign, or c2 jumps through infinity; `minimize` over a range of k."""
-        found = self._core.critical(self._set(set, parameters), M, vary, between, of, k, minimize, _near(near))
+        """Where growth or c2 changes sign, or c2 jumps through infinity; `minimize` over a range of k.
+
+        The leading mode at every place; with `follow` one mode by its shape, that which grows fastest on the axis."""
+        found = self._core.critical(
+            self._set(set, parameters), M, vary, between, of, k, minimize, _near(near), follow
+        )
         return Critical(self, json.loads(found), M)
 
     def sweep(

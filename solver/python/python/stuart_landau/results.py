@@ -356,8 +356,13 @@ class Critical(Result):
         self.value: float = data[0]["value"]
         self.error: float = data[0]["error"]
         self.k: float = data[0]["k"]
+        self.k_error: float = data[0]["k_error"]
         self.c0 = _complex(data[0]["c0"])
-        #: With `minimize`: epsilon in words, tau0, xi0_squared, g of the envelope equation, what a wave has besides.
+        self.c0_error: float = data[0]["c0_error"]
+        #: The largest growth rate there: that of `c0`, unless a mode is followed.
+        self.leading_growth: float = data[0]["leading_growth"]
+        #: With `minimize`: epsilon in words, tau0, xi0_squared, g of the envelope equation, what a wave has besides, and the
+        #: `error` of each by the same names.
         self.envelope: dict[str, Any] | None = data[0].get("envelope")
 
     def _rows(self) -> list[tuple[str, str]]:
@@ -365,8 +370,12 @@ class Critical(Result):
             (p["parameter"], f"{p['value']:.10g} ± {p['error']:.0e} (of {p['of']}) at k = {p['k']:.10g}")
             for p in self.all
         ]
-        known = [(name, value) for name, value in (self.envelope or {}).items() if value]
-        return rows + [(name, value if isinstance(value, str) else f"{value:.9g}") for name, value in known]
+        envelope = self.envelope or {}
+        errors = envelope.get("error", {})
+        known = [(name, value) for name, value in envelope.items() if value is not None and name != "error"]
+        return rows + [
+            (name, value if isinstance(value, str) else f"{value:.9g} ± {errors[name]:.0e}") for name, value in known
+        ]
 
 
 class Certificate(Result):

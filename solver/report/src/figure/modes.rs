@@ -2,7 +2,7 @@
 
 use super::{Drawing, Panel, Style, panels, ticks};
 use landau_solver::model::{C64, Structure};
-use landau_solver::study::critical::Scan;
+use landau_solver::study::critical::Curve;
 use landau_solver::study::modes::{ModeProfile, Modes};
 use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::spectrum::SpectrumReport;
@@ -92,10 +92,10 @@ pub fn base(found: &BaseReport) -> Option<Drawing> {
 }
 
 /// A quantity over the range in which it was asked to vanish, and where it does.
-pub fn critical(title: &str, axis: &str, quantity: &str, found: &Scan) -> Option<Drawing> {
+pub fn critical(title: &str, axis: &str, quantity: &str, found: &Curve) -> Option<Drawing> {
     let mut panel = Panel::new(title, axis, quantity);
-    panel.curve_with_poles(quantity, Style::Line, found.curve.clone());
-    let roots = found.found.iter().map(|point| (point.value, 0.0)).collect();
+    panel.curve_with_poles(quantity, Style::Line, found.points.clone());
+    let roots = found.roots.iter().map(|root| (*root, 0.0)).collect();
     panel.curve("critical points", Style::Dots, roots);
     panels("", &[panel])
 }

@@ -109,6 +109,9 @@ pub struct Asked {
     pub k: Option<f64>,
     /// Extremum over this range of k.
     pub minimize: Option<[f64; 2]>,
+    /// Of one mode by its shape, that which grows fastest on the axis; of the leading mode otherwise.
+    #[serde(default)]
+    pub follow: bool,
 }
 
 fn growth() -> Of {

@@ -6,12 +6,11 @@ use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::each;
-use super::points::{critical_point, question};
+use super::points::critical_point;
 use super::rows::{nothing_in, rows};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
-use landau_solver::study::Silent;
-use landau_solver::study::critical::{self, Critical};
+use landau_solver::study::critical::Critical;
 use landau_solver::study::row::{Column, NUMBERS, Row, column};
 use landau_solver::study::sweep::RowMode;
 use rayon::prelude::*;
@@ -298,8 +297,7 @@ pub(super) fn power_law(
     let mut outcome = Outcome::default();
     let found = each(cases, &mut outcome.failures, |case| {
         let setup = shop.setup(case)?;
-        let question = question(&setup, case, asked)?;
-        let critical = critical::critical(&setup, question, &Silent)?.swap_remove(0);
+        let critical = critical_point(&setup, case, asked)?;
         let (place, error) = (critical.value, critical.error);
         let [near, far] = distances.map(f64::abs);
         let steps = (count - 1) as f64;

@@ -9,34 +9,30 @@ use super::rows::{Coefficients, rows};
 use super::{Named, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
-use landau_solver::study::critical::{self, Critical, Quantity, Question};
-use landau_solver::study::minimise;
+use landau_solver::study::critical::{self, Critical, Quantity, Question, Request, Tracking};
 use landau_solver::study::sweep::RowMode;
-use landau_solver::study::{self, Setup, Silent};
+use landau_solver::study::{Setup, Silent};
 
-/// The question of a study file for one case.
-pub(super) fn question(setup: &Setup, case: &Case, asked: &Asked) -> Result<Question> {
-    Ok(Question {
-        axis: study::Axis::named(setup.model.as_ref(), &asked.vary)?,
-        from: asked.between[0],
-        to: asked.between[1],
-        quantity: match asked.of {
+/// The first answer to a question of a study file for one case.
+pub(super) fn critical_point(setup: &Setup, case: &Case, asked: &Asked) -> Result<Critical> {
+    let of_case = asked.vary != "k" && asked.minimize.is_none();
+    let request = Request {
+        vary: &asked.vary,
+        between: asked.between,
+        of: match asked.of {
             Of::Growth => Quantity::Growth,
             Of::C2 => Quantity::C2,
             Of::Resonance => Quantity::Resonance,
         },
-        k: asked.k.or(case.k),
-        near: None,
-    })
-}
-
-/// The first answer of a question.
-pub(super) fn critical_point(setup: &Setup, case: &Case, asked: &Asked) -> Result<Critical> {
-    let question = question(setup, case, asked)?;
-    match asked.minimize {
-        Some([from, to]) => minimise::minimise(setup, question, (from, to), &Silent),
-        None => Ok(critical::critical(setup, question, &Silent)?.swap_remove(0)),
-    }
+        k: asked.k.or(case.k.filter(|_| of_case)),
+        minimize: asked.minimize,
+        tracking: match asked.follow {
+            true => Tracking::Fastest,
+            false => Tracking::Leading,
+        },
+    };
+    let question = Question::new(setup, &request)?;
+    Ok(critical::critical(setup, &question, &Silent)?.swap_remove(0))
 }
 
 /// One question about one case.
