@@ -122,6 +122,7 @@ impl Diagnostics {
             shown = lines[window.clone()].replace('\n', " ");
             own = own.start - window.start..(own.end - window.start).min(shown.len());
         }
+        let shown: String = shown.chars().map(visible).collect();
         let snippet = Snippet::source(shown.as_str())
             .path(path.as_str())
             .line_start(number)
@@ -137,6 +138,15 @@ impl Diagnostics {
             group = group.element(Level::HELP.message(hint.as_str()));
         }
         Renderer::plain().render(&[group])
+    }
+}
+
+/// Stands in for marks that turn the direction of a line, with as many bytes.
+fn visible(character: char) -> char {
+    match character {
+        '\u{61c}' => '¿',
+        '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
+        plain => plain,
     }
 }
 
