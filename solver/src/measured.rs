@@ -272,9 +272,9 @@ mod tests {
 
     #[test]
     fn no_digit_beyond_the_error() {
-        assert_eq!(shown(1707.761_777_1, 1.9e-5), "1707.76178 ± 3e-5");
+        assert_eq!(shown(1_707.761_777_1, 1.9e-5), "1707.76178 ± 3e-5");
         assert_eq!(shown(5775.4, 2.4), "5775 ± 3");
-        assert_eq!(shown(-3224.672_822, 167.0), "-3.2e3 ± 2e2");
+        assert_eq!(shown(-3_224.672_822, 167.0), "-3.2e3 ± 2e2");
         assert_eq!(shown(0.25, 9.6e-3), "0.25 ± 1e-2");
         assert_eq!(shown(1e-17, 5e-16), "0 ± 6e-16");
         assert_eq!(shown(5.396e-5, 1e-9), "5.3960e-5 ± 1e-9");

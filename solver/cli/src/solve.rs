@@ -18,7 +18,7 @@ use landau_solver::study::profiles::BaseReport;
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::verify::Certificate;
-use landau_solver::study::{Axis, Setup, check_wavenumber, journal_path};
+use landau_solver::study::{Axis, Setup, journal_path};
 use landau_solver::words;
 use serde_json::json;
 

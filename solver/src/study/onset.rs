@@ -148,6 +148,51 @@ impl Numbers {
         ])
     }
 
+    /// The onset that they describe at a resolution; `sum` is what the terms of c2 sum to.
+    ///
+    /// # Errors
+    /// Numbers that are not converged.
+    fn onset(
+        self,
+        distance: String,
+        sum: f64,
+        resolution: Option<usize>,
+        conserved_mean: bool,
+    ) -> Result<Onset> {
+        let decided = |number: Decided| {
+            number.and_then(|number| match number.error.is_finite() {
+                true => Ok(number),
+                false => Err("it is not converged".to_owned()),
+            })
+        };
+        let needed = |number: Decided| decided(number).map_err(Error::Computation);
+        let [tau0, xi0_squared, g, velocity, shift, dispersion, nonlinear] = self.0;
+        let tau0 = needed(tau0)?;
+        if tau0.error > UNCONVERGED * tau0.value {
+            let how_far = format!("its error is {:.1e}", tau0.error);
+            return Err(Error::unresolved("τ0", resolution, how_far));
+        }
+        let sum = sum * tau0.value;
+        let g = g.and_then(|g| match stands(g.error, g.value.abs(), sum) {
+            true => Ok(g),
+            false => Err(format!(
+                "it is not converged, its error being {:.0e}",
+                g.error
+            )),
+        });
+        Ok(Onset {
+            distance,
+            tau0,
+            xi0_squared: needed(xi0_squared)?,
+            g,
+            group_velocity: needed(velocity)?,
+            frequency_shift: decided(shift),
+            dispersion: decided(dispersion),
+            nonlinear_dispersion: decided(nonlinear),
+            conserved_mean,
+        })
+    }
+
     /// Errors no smaller than differences from other numbers, times a factor; what these do not have is not known.
     fn widen(&mut self, others: Option<&Numbers>, factor: f64) {
         for (index, number) in self.0.iter_mut().enumerate() {
@@ -201,52 +246,9 @@ impl Onset {
         let nudged = nudged.map(|nudged| Numbers::of(&nudged, distance.unit, name));
         let moves = (critical.k_error / critical.k).max(32.0 * f64::EPSILON) / NUDGE;
         numbers.widen(nudged.as_ref(), moves);
-        let [
-            tau0,
-            xi0_squared,
-            g,
-            group_velocity,
-            frequency_shift,
-            dispersion,
-            nonlinear,
-        ] = numbers.0;
         let m = setup.effective_resolution();
-        let converged = |number: Decided, what: &str| -> Result<Measured> {
-            let number = number.map_err(Error::Computation)?;
-            match number.error <= UNCONVERGED * number.value.abs() {
-                true => Ok(number),
-                false => Err(Error::unresolved(
-                    what,
-                    m,
-                    format!("its error is {:.1e}", number.error),
-                )),
-            }
-        };
-        let decided = |number: Decided| {
-            number.and_then(|number| match number.error.is_finite() {
-                true => Ok(number),
-                false => Err("it is not converged".to_owned()),
-            })
-        };
-        let sum = found.sum * tau0.as_ref().map_or(1.0, |tau0| tau0.value);
-        let g = g.and_then(|g| match stands(g.error, g.value.abs(), sum) {
-            true => Ok(g),
-            false => Err(format!(
-                "it is not converged, its error being {:.0e}",
-                g.error
-            )),
-        });
-        Ok(Onset {
-            distance: distance.words,
-            tau0: converged(tau0, "τ0")?,
-            xi0_squared: decided(xi0_squared).map_err(Error::Computation)?,
-            g,
-            group_velocity: decided(group_velocity).map_err(Error::Computation)?,
-            frequency_shift: decided(frequency_shift),
-            dispersion: decided(dispersion),
-            nonlinear_dispersion: decided(nonlinear),
-            conserved_mean: root.site.problem.conserves_a_mean(),
-        })
+        let mean = root.site.problem.conserves_a_mean();
+        numbers.onset(distance.words, found.sum, m, mean)
     }
 
     /// The numbers by their keys.

@@ -262,7 +262,7 @@ impl Cubic {
             true => c / (root - b),
             false => (-b - root) / (3.0 * a),
         };
-        (t > 0.0 && t < 1.0).then(|| (t, d + t * (c + t * (b + t * a))))
+        (t > 0.0 && t < 1.0).then_some((t, d + t * (c + t * (b + t * a))))
     }
 }
 
