@@ -13,8 +13,10 @@ fn folder(name: &str) -> PathBuf {
 }
 
 fn command(out: &Path, extra: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_landau-under-test"));
+    // Signals that are ignored where the tests run, in the background for example, are not ignored here.
+    let mut command = Command::new("env");
     command
+        .args(["--default-signal", env!("CARGO_BIN_EXE_landau-under-test")])
         .args(["sweep", "swift_hohenberg_strip", "-M", "30"])
         .args(["--over", "k=0.9:1.1:80", "--over", "r=1:1.2:5", "--out"])
         .arg(out)

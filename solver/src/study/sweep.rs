@@ -93,7 +93,7 @@ impl<'s> Sweep<'s> {
             }
         }
         if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
-            let k = k.ok_or_else(|| Error::input("no axis is k: give the wavenumber"))?;
+            let k = k.ok_or_else(|| Error::input("no axis is k: give the wavenumber, with --k"))?;
             check_wavenumber(k)?;
         }
         Ok(Sweep {

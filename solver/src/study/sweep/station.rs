@@ -141,7 +141,7 @@ impl Sweep<'_> {
                 axis => setup = setup.moved(axis, value)?,
             }
         }
-        let k = k.ok_or_else(|| Error::input("no axis is k: give the wavenumber"))?;
+        let k = k.ok_or_else(|| Error::input("no axis is k: give the wavenumber, with --k"))?;
         Ok((setup, k))
     }
 

@@ -97,7 +97,7 @@ fn said(key: &str, text: &str) -> Result<(), String> {
 fn shown(text: &str, prose: bool) -> Result<(), String> {
     match text
         .chars()
-        .find(|&c| !is_shown(c) && !(prose && matches!(c, '\n' | '\t' | '\r')))
+        .find(|&c| !(is_shown(c) || prose && matches!(c, '\n' | '\t' | '\r')))
     {
         None => Ok(()),
         Some(c) => Err(format!(
