@@ -147,7 +147,10 @@ fn tables_of_other_sweeps() {
     let before = fs::read(&out).expect("a table");
     for (more, part) in [
         (&["--set", "r=0.2"][..], "r is 0.2 here and"),
-        (&["--near", "0.1"], "the mode of the rows is nearest to 0.1,0 here and leading there"),
+        (
+            &["--near", "0.1"],
+            "the mode of the rows is nearest to 0.1,0 here and leading there",
+        ),
         (&["-M", "60"], "M is 60 here and 50 there"),
     ] {
         let answer = refused(&with(&out, more), &out);

@@ -340,8 +340,9 @@ fn solved(mut a: Vec<Vec<Complex2>>, mut b: Vec<Complex2>) -> Vec<Complex2> {
         b.swap(column, pivot);
         for row in column + 1..n {
             let factor = a[row][column] / a[column][column];
-            for j in column..n {
-                a[row][j] = a[row][j] - factor * a[column][j];
+            let pivot_row = a[column].clone();
+            for (entry, above) in a[row].iter_mut().zip(pivot_row).skip(column) {
+                *entry = *entry - factor * above;
             }
             b[row] = b[row] - factor * b[column];
         }
