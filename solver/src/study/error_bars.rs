@@ -21,8 +21,8 @@ use crate::spectrum::{self, EigenPair};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Weight of the difference to 3M/2: it covers the error where half as many points more gain a factor of three.
-pub const TRUNCATION: f64 = 1.5;
+/// Weight of the difference to 3M/2: it covers an error that falls as M^-2, of which that difference is five ninths.
+pub const TRUNCATION: f64 = 2.0;
 /// Weight of differences that show a rounding error by another one of the same size.
 pub const SAFETY: f64 = 5.0;
 /// Rounding errors of the data that a result is allowed to be wrong by, in units of the machine's precision.

@@ -27,6 +27,9 @@ use station::Collocations;
 
 /// Places of the first axis that one worker computes at a time.
 const CHUNK: usize = 40;
+/// Most rows of a sweep, and of one run of it, which keeps them all in memory.
+const MOST_ROWS: usize = 1_000_000_000;
+const MOST_ROWS_OF_A_RUN: usize = 20_000_000;
 
 /// Evenly spaced values along one axis.
 #[derive(Clone, Debug)]
@@ -91,6 +94,13 @@ impl<'s> Sweep<'s> {
                     axis => setup.accepts(axis, value)?,
                 }
             }
+        }
+        let lengths = ranges.iter().map(|range| range.values.len());
+        let rows = lengths.fold(Some(1), |rows: Option<usize>, n| rows?.checked_mul(n));
+        if rows.is_none_or(|rows| rows > MOST_ROWS) {
+            return Err(Error::input(format!(
+                "the axes make more than {MOST_ROWS} rows: give them fewer values"
+            )));
         }
         if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
             let k = k.ok_or_else(|| Error::input("no axis is k: give the wavenumber, with --k"))?;
@@ -175,6 +185,12 @@ impl Sweep<'_> {
         progress: &dyn Progress,
         resumed: impl FnOnce(Resumed),
     ) -> Result<(BTreeMap<usize, Vec<Row>>, Journal)> {
+        let rows = part.len() * CHUNK.min(self.ranges[0].values.len());
+        if rows > MOST_ROWS_OF_A_RUN {
+            return Err(Error::input(format!(
+                "one run computes at most {MOST_ROWS_OF_A_RUN} rows: compute shares of the sweep, with --shard I/N"
+            )));
+        }
         let journal = Journal::open(target, &self.identity(), overwrite, |chunk, rows| {
             part.contains(&chunk)
                 && rows

@@ -159,6 +159,15 @@ fn third_order(
         product(problem, &[&conjugate, &x22], 2.0),
         product(problem, &[&x, &x, &conjugate], 3.0),
     ];
+    if !third
+        .iter()
+        .flat_map(|forcing| forcing.iter())
+        .all(|v| v.re.is_finite() && v.im.is_finite())
+    {
+        return Err(Error::computation(
+            "the products of the mode are out of the range of double precision: choose other units or parameters",
+        ));
+    }
     let mass = problem.direct.mass::<C64>(pair.k);
     let mass_x = mass.apply(&problem.direct.turned(&fundamental.values));
     let below = dot(&pair.left, &mass_x);

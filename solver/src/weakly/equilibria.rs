@@ -229,13 +229,32 @@ fn starts(system: &AmplitudeSystem, present: &[usize]) -> Vec<Vec<C64>> {
     (0..total).map(start).collect()
 }
 
+/// The relative difference below which two solutions are one. Near onset the rounding of frequencies is a part of the growth rates.
+fn resolution(system: &AmplitudeSystem) -> f64 {
+    let linear = system
+        .equations
+        .iter()
+        .flatten()
+        .filter(|t| t.monomial.degree() == 1);
+    let (rate, growth) = linear.fold((0.0_f64, f64::INFINITY), |(rate, growth), term| {
+        (rate.max(term.g.norm()), growth.min(term.g.re.abs()))
+    });
+    let rounding = 256.0 * f64::EPSILON * rate / growth;
+    SAME.max(if rounding.is_finite() {
+        rounding.min(0.3)
+    } else {
+        0.3
+    })
+}
+
 /// Whether two states differ by a symmetry: the moduli and all terms of the equations, over their amplitudes, agree.
 fn same(system: &AmplitudeSystem, a: &[C64], b: &[C64]) -> bool {
+    let tolerance = resolution(system);
     let size = a.iter().map(|z| z.norm()).fold(0.0, f64::max);
     let moduli = a.iter().zip(b);
     if moduli
         .into_iter()
-        .any(|(a, b)| (a.norm() - b.norm()).abs() > SAME * size)
+        .any(|(a, b)| (a.norm() - b.norm()).abs() > tolerance * size)
     {
         return false;
     }
@@ -244,7 +263,7 @@ fn same(system: &AmplitudeSystem, a: &[C64], b: &[C64]) -> bool {
     terms.all(|(j, term)| {
         let value = |z: &[C64]| power(&term.monomial, z) * z[j].conj();
         let (a, b) = (value(a), value(b));
-        (a - b).norm() <= 10.0 * SAME * a.norm().max(b.norm())
+        (a - b).norm() <= 10.0 * tolerance * a.norm().max(b.norm())
     })
 }
 
@@ -324,6 +343,9 @@ fn eigenvalues(system: &AmplitudeSystem, z: &[C64], frequencies: &[f64]) -> Opti
             let own = slopes[i][j] - C64::new(0.0, if i == j { omega } else { 0.0 });
             fill(&mut jacobian, (i, j), own, conjugate[i][j]);
         }
+    }
+    if !jacobian.iter().all(|v| v.is_finite()) {
+        return None;
     }
     let mut values: Vec<C64> = jacobian.complex_eigenvalues().iter().copied().collect();
     values.sort_by(|a, b| a.norm().total_cmp(&b.norm()));

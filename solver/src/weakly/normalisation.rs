@@ -39,6 +39,14 @@ fn unchecked(problem: &Problem, k: f64, values: &Profile) -> Result<C64> {
         Measure::Integral { value, .. } => (value, 0.0),
     };
     if let Some(field) = amplitude.field {
+        if let Some([low, high]) = problem.space().ends()
+            && !(low..=high).contains(&place)
+        {
+            return Err(Error::input(format!(
+                "the block `amplitude` names the place {place}, which lies outside of the interval {low}..{high}: {}",
+                amplitude.description
+            )));
+        }
         let value = point_value(problem, values, field, place);
         if wanted.is_nan() || wanted <= 0.0 {
             return Err(vanishes(problem));

@@ -4,7 +4,7 @@
 use super::cubic::LandauPoint;
 use super::expansion::Expansion;
 use super::mode::Mode;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{C64, Expression, FieldId, Jet, Table};
 use crate::problem::Problem;
 use crate::space::Place;
@@ -96,10 +96,22 @@ pub fn pattern(
             nonlinear: sum.of(ORDER, expression),
         }
     };
+    let fields: Table<FieldId, PlaneField> = structure.profiles().map(field).collect();
+    let derived: Vec<PlaneField> = expressions.iter().map(derived).collect();
+    if let Some(field) = fields
+        .iter()
+        .chain(&derived)
+        .find(|field| !field.is_finite())
+    {
+        return Err(Error::computation(format!(
+            "`{}` has no finite value somewhere in the plane at amplitude A = {amplitude:e}; try a smaller --amplitude",
+            field.name
+        )));
+    }
     Ok(Pattern {
         amplitude,
-        fields: structure.profiles().map(field).collect(),
-        derived: expressions.iter().map(derived).collect(),
+        fields,
+        derived,
         y: places.iter().map(|&place| space.y(place)).collect(),
         x,
     })
@@ -153,6 +165,16 @@ impl Superposition<'_> {
         };
         let row = |j: usize| (0..self.x.len()).map(|i| value(j, i)).collect();
         (0..self.states.len()).map(row).collect()
+    }
+}
+
+impl PlaneField {
+    fn is_finite(&self) -> bool {
+        let planes = self.linear.iter().chain(&self.nonlinear).flatten();
+        self.base
+            .iter()
+            .chain(planes)
+            .all(|value| value.is_finite())
     }
 }
 

@@ -117,6 +117,14 @@ impl System for Standing<'_> {
     /// Of least size: phases that are free stay where they are.
     fn step(&mut self, _: &[f64], at: &Linearised<Self>) -> Result<Option<Vec<f64>>, Failure> {
         let right = -DVector::from_column_slice(&at.residual);
+        if !at
+            .jacobian
+            .iter()
+            .chain(right.iter())
+            .all(|v| v.is_finite())
+        {
+            return Ok(None);
+        }
         let solved = at.jacobian.clone().svd(true, true);
         let floor = 1e-12 * solved.singular_values.max();
         let step = solved.solve(&right, floor).ok();

@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use crate::problem::Problem;
 use std::sync::Arc;
 
-/// Safety factor of the difference to 3M/2: it covers the error where half as many points more gain a factor of three.
-const TRUNCATION: f64 = 1.5;
+/// Safety factor of the difference to 3M/2: it covers an error that falls as M^-2.
+const TRUNCATION: f64 = 2.0;
 /// Safety factor of a difference that shows rounding, which is as good as random.
 const SAFETY: f64 = 5.0;
 

@@ -35,6 +35,9 @@ pub enum Wavenumber {
     Range(f64, f64),
 }
 
+/// The least length of an interval: below it products of its parts underflow.
+const LEAST_SPAN: f64 = 1e-150;
+
 /// A question as a user puts it.
 #[derive(Clone, Copy, Debug)]
 pub struct Request<'a> {
@@ -73,7 +76,8 @@ impl Question {
         let axis = Axis::named(setup.model.as_ref(), request.vary)?;
         axis.check_continuous(setup.model.structure())?;
         let [from, to] = request.between;
-        if !(from.is_finite() && to.is_finite()) || from == to {
+        let span = (to - from).abs();
+        if !(LEAST_SPAN..f64::INFINITY).contains(&span) {
             return Err(Error::input(format!(
                 "`{}` cannot vary from {from} to {to}: give two different numbers, --from and --to",
                 request.vary

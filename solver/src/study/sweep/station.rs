@@ -15,10 +15,9 @@ use std::sync::Arc;
 
 /// A second-order problem nearer to singularity than this, relative to the slow rates, makes a row no `ok`.
 const RESONANT: f64 = 1e-3;
-/// An error below this part of its coefficient is rounding, which two collocations show by chance: it is widened.
-const ROUNDED: f64 = 1e-7;
-/// The factor by which it is widened.
-const SAFETY: f64 = 8.0;
+/// Weight of the difference to the coarser collocation. It covers an error that falls as 1/M, of which that difference is a fifth, and
+/// a rounding error, which two collocations show by chance.
+const SAFETY: f64 = 5.0;
 
 /// The problems of one base state.
 pub(super) struct Collocations {
@@ -60,22 +59,11 @@ impl Collocations {
         };
         let point_on_coarser = spectrum::transferred(&self.problem, &point.pair, coarser)
             .and_then(|pair| weakly::from_pair(coarser, pair));
-        let widened = |error: f64, size: f64| {
-            if error <= ROUNDED * size {
-                SAFETY * error
-            } else {
-                error
-            }
-        };
         match point_on_coarser {
-            Ok(coarse) => {
-                let scale = point.pair.scale.max(point.c0.norm());
-                let [e0, e2] = [(coarse.c0 - point.c0).norm(), (coarse.c2 - point.c2).norm()];
-                [
-                    floor[0].max(widened(e0, scale)),
-                    floor[1].max(widened(e2, point.size())),
-                ]
-            }
+            Ok(coarse) => [
+                floor[0].max(SAFETY * (coarse.c0 - point.c0).norm()),
+                floor[1].max(SAFETY * (coarse.c2 - point.c2).norm()),
+            ],
             Err(_) => [f64::INFINITY; 2],
         }
     }
