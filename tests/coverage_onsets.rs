@@ -48,7 +48,7 @@ const FAMILIES: [Family; 6] = [
         between: [-0.4, 3.0],
         minimize: [0.5, 1.5],
         set: &[("b", -2.0, 2.0)],
-        count: 20,
+        count: 8,
     },
     Family {
         model: "rayleigh_benard",
@@ -58,7 +58,7 @@ const FAMILIES: [Family; 6] = [
         between: [1200.0, 2500.0],
         minimize: [2.0, 5.0],
         set: &[("Pr", 0.2, 20.0)],
-        count: 20,
+        count: 8,
     },
     Family {
         model: "plane_poiseuille",
@@ -68,7 +68,7 @@ const FAMILIES: [Family; 6] = [
         between: [5000.0, 6500.0],
         minimize: [0.9, 1.15],
         set: &[],
-        count: 16,
+        count: 4,
     },
     Family {
         model: "vibrated_bed",
@@ -78,7 +78,7 @@ const FAMILIES: [Family; 6] = [
         between: [30.0, 90.0],
         minimize: [0.06, 0.2],
         set: &[("F", 5.5, 6.5), ("e", 0.89, 0.91)],
-        count: 4,
+        count: 2,
     },
 ];
 

@@ -89,6 +89,13 @@ impl<'a> Expander<'a> {
             }
             Node::Call(function, argument) => {
                 let form = self.expand(graph, argument)?;
+                let value = form.base(graph);
+                if function == Function::Log && graph.vanishes(value) {
+                    return Err(Inexpandable(
+                        "a logarithm, or a power with a parameter in its exponent, of something that vanishes in the base state"
+                            .into(),
+                    ));
+                }
                 let taylor = self.function_series(graph, function, &form);
                 Ok(form.compose(graph, &taylor))
             }

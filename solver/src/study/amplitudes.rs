@@ -302,7 +302,11 @@ pub(super) fn errors(
     let row = |terms: &Vec<weakly::Term>| -> Vec<f64> {
         let errors = terms.iter().zip(all.by_ref());
         errors
-            .map(|(t, error)| error.max(ROUNDING * t.g.norm()))
+            .map(|(t, error)| {
+                // A coefficient of degree d rests on d/2 orders, each with rounding errors of its own.
+                let orders = (t.monomial.degree() / 2).max(1) as f64;
+                orders * error.max(ROUNDING * t.g.norm())
+            })
             .collect()
     };
     Ok(system.equations.iter().map(row).collect())

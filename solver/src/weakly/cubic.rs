@@ -15,7 +15,7 @@ use super::scramble::{Weight, scrambled, turned};
 use crate::error::{Error, Result};
 use crate::model::{C64, Jet};
 use crate::numerics::Applied;
-use crate::numerics::dense::dot;
+use crate::numerics::dense::{dot, norm};
 use crate::problem::{Problem, Turned};
 use crate::space::Points;
 use crate::spectrum::{self, EigenPair};
@@ -126,6 +126,7 @@ fn third_order(
     let arithmetic = arithmetic(problem, &[pair.c]);
     let uncancelled = || Some(mean_forcing(problem, fundamental, Some(turned)));
     let respond = |q: f64, shift: C64, forcing: RightSide| {
+        forcing.check_range()?;
         let question = Question {
             q,
             shift,
@@ -159,14 +160,8 @@ fn third_order(
         product(problem, &[&conjugate, &x22], 2.0),
         product(problem, &[&x, &x, &conjugate], 3.0),
     ];
-    if !third
-        .iter()
-        .flat_map(|forcing| forcing.iter())
-        .all(|v| v.re.is_finite() && v.im.is_finite())
-    {
-        return Err(Error::computation(
-            "the products of the mode are out of the range of double precision: choose other units or parameters",
-        ));
+    if !third.iter().all(|forcing| norm(forcing).is_finite()) {
+        return Err(super::response::out_of_range());
     }
     let mass = problem.direct.mass::<C64>(pair.k);
     let mass_x = mass.apply(&problem.direct.turned(&fundamental.values));

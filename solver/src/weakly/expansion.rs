@@ -273,6 +273,7 @@ impl Expansion {
     }
 
     fn solve(&mut self, posed: &Posed, forcing: RightSide) -> Result<Mode> {
+        forcing.check_range()?;
         let alpha = &posed.alpha;
         let borders = posed.resonant.iter().map(|&j| {
             let mode = &self.modes[j];

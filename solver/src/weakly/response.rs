@@ -2,7 +2,7 @@
 //! with an amplitude of its own, closed where it is zero.
 
 use super::mode::Mode;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::model::{C64, ClosureKind, FieldId};
 use crate::numerics::dense::{Scalar, bordered, norm, scalars};
 use crate::problem::{Border, Known, Problem, Profile, Solver, Turned};
@@ -50,6 +50,26 @@ pub struct RightSide {
     pub equations: Turned,
     /// Of the closures at k = 0, one a border of the problem; empty where all densities are linear.
     pub closures: Vec<C64>,
+}
+
+impl RightSide {
+    /// Refuses products that overflow, which would be lost beside each other.
+    ///
+    /// # Errors
+    /// A right-hand side whose size is out of the range of double precision.
+    pub fn check_range(&self) -> Result<()> {
+        if norm(&self.equations).is_finite() && norm(&self.closures).is_finite() {
+            return Ok(());
+        }
+        Err(out_of_range())
+    }
+}
+
+/// What to say of products that overflow.
+pub fn out_of_range() -> Error {
+    Error::computation(
+        "products of the mode are out of the range of double precision: choose other units or parameters",
+    )
 }
 
 /// A linear problem with its forcing, in the solver's basis.

@@ -454,7 +454,10 @@ impl Search<'_> {
                 root: moved,
             });
         }
-        if critical.error.is_nan() || critical.error > (UNRESOLVED * x.abs()).max(leftover) {
+        let [low, high] = [self.range.0, self.range.1];
+        let lost = critical.k_error.is_nan() || critical.k_error >= high - low;
+        if lost || critical.error.is_nan() || critical.error > (UNRESOLVED * x.abs()).max(leftover)
+        {
             return Err(Error::unresolved(
                 format!("the critical point near {x}"),
                 self.setup.effective_resolution(),
