@@ -95,8 +95,8 @@ impl<'s> Sweep<'s> {
                 }
             }
         }
-        let lengths = ranges.iter().map(|range| range.values.len());
-        let rows = lengths.fold(Some(1), |rows: Option<usize>, n| rows?.checked_mul(n));
+        let mut lengths = ranges.iter().map(|range| range.values.len());
+        let rows = lengths.try_fold(1_usize, |rows, n| rows.checked_mul(n));
         if rows.is_none_or(|rows| rows > MOST_ROWS) {
             return Err(Error::input(format!(
                 "the axes make more than {MOST_ROWS} rows: give them fewer values"
