@@ -96,7 +96,7 @@ pub fn sweep_into(
 /// Writes the table that merged shares make.
 ///
 /// # Errors
-/// As [`check`] and [`write`].
+/// As [`check`] and [`write()`].
 pub fn write_merged(out: &Path, table: &Table, overwrite: Overwrite) -> Result<()> {
     let target = check(out, &table.sweep, overwrite)?;
     write(&target, table)
