@@ -6,6 +6,7 @@ use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::{Sources, generate};
 use landau_report::library::Library;
 use landau_report::reproduce::{Formulas, Provenance, Study, Workshop};
+use landau_solver::file::Overwrite;
 use landau_solver::study::Silent;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
@@ -172,7 +173,8 @@ fn damaged_studies_end_quickly() {
         };
         let began = Instant::now();
         let accepted = Study::read(&path).is_ok_and(|study| {
-            let shop = Workshop::new(&library, &study, &folder.path().join(name), provenance);
+            let out = folder.path().join(name);
+            let shop = Workshop::new(&library, &study, &out, Overwrite::Recognised, provenance);
             shop.is_ok_and(|shop| {
                 if worked_through {
                     let _ = shop.run(&Formulas::default(), &Silent);

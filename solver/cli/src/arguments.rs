@@ -161,6 +161,9 @@ pub enum Command {
         /// that of the task of a job array.
         #[arg(long, value_name = "I/N")]
         shard: Option<String>,
+        /// Replace files of the report that were changed since, or that it did not write.
+        #[arg(long)]
+        force: bool,
         /// Print one JSON object alone on standard output.
         #[arg(long)]
         json: bool,
@@ -193,7 +196,7 @@ pub struct Common {
     #[arg(short = 'M', default_value_t = 50)]
     pub resolution: usize,
     /// Which mode: the one nearest to this eigenvalue; the leading one by default.
-    #[arg(long, value_name = "RE[,IM]", value_parser = complex, allow_hyphen_values = true)]
+    #[arg(long, value_name = "RE[:IM]", value_parser = near, allow_hyphen_values = true)]
     pub near: Option<C64>,
     /// Print one JSON object alone on standard output.
     #[arg(long)]
@@ -359,15 +362,13 @@ pub enum Of {
     Resonance,
 }
 
-fn complex(text: &str) -> Result<C64, String> {
+/// An eigenvalue, `RE[:IM]`; a comma is accepted in the place of the colon.
+fn near(text: &str) -> Result<C64, String> {
     let number = |part: &str| {
-        part.trim()
-            .parse::<f64>()
-            .ok()
-            .filter(|v| v.is_finite())
-            .ok_or_else(|| format!("`{part}` is not a number; --near accepts RE or RE,IM"))
+        let value = part.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+        value.ok_or_else(|| format!("`{part}` is not a number; near accepts RE or RE:IM"))
     };
-    match text.split_once(',') {
+    match text.split_once([':', ',']) {
         Some((re, im)) => Ok(C64::new(number(re)?, number(im)?)),
         None => Ok(C64::new(number(text)?, 0.0)),
     }
@@ -377,24 +378,33 @@ fn complex(text: &str) -> Result<C64, String> {
 fn mode(text: &str) -> Result<ModeChoice, String> {
     let wrong =
         |part: &str| format!("`{part}` is no part of a mode; --mode accepts k=K[,near=RE[:IM]]");
-    let number = |part: &str, text: &str| {
-        let value = text.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-        value.ok_or_else(|| wrong(part))
-    };
-    let (mut k, mut near) = (None, None);
-    for part in text.split(',') {
+    let twice =
+        |key: &str| format!("`{text}` names {key} twice; --mode accepts k=K[,near=RE[:IM]]");
+    let (mut k, mut target) = (None, None);
+    let mut parts = text.split(',').peekable();
+    while let Some(part) = parts.next() {
         match part.trim().split_once('=') {
-            Some(("k", value)) => k = Some(number(part, value)?),
-            Some(("near", value)) => {
-                let (re, im) = value.split_once(':').unwrap_or((value, "0"));
-                near = Some(C64::new(number(part, re)?, number(part, im)?));
+            Some(("k", value)) => {
+                let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
+                let value = value.ok_or_else(|| wrong(part))?;
+                if k.replace(value).is_some() {
+                    return Err(twice("k"));
+                }
+            }
+            Some(("near", re)) => {
+                // The comma of RE,IM separates parts of a mode too: a part without a name is IM.
+                let im = parts.next_if(|next| !next.contains('='));
+                let value = im.map_or(re.to_owned(), |im| format!("{re},{im}"));
+                if target.replace(near(&value)?).is_some() {
+                    return Err(twice("near"));
+                }
             }
             _ => return Err(wrong(part)),
         }
     }
     let k =
         k.ok_or_else(|| format!("`{text}` has no wavenumber; --mode accepts k=K[,near=RE[:IM]]"))?;
-    Ok(ModeChoice { k, near })
+    Ok(ModeChoice { k, near: target })
 }
 
 /// `NAME=A:B` or `NAME=A:B:N`
@@ -415,4 +425,37 @@ pub fn range(option: &str, text: &str, parts: usize) -> Result<(String, Vec<f64>
         return Err(wrong());
     }
     Ok((name.trim().to_owned(), numbers))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{mode, near};
+    use landau_solver::model::C64;
+
+    /// Both spellings of an eigenvalue, in both places.
+    #[test]
+    fn an_eigenvalue_has_two_spellings() {
+        let expected = C64::new(-0.5, 2.0);
+        for text in ["-0.5:2", "-0.5,2", " -0.5 : 2 "] {
+            assert_eq!(near(text), Ok(expected), "{text}");
+            for order in [format!("k=3,near={text}"), format!("near={text},k=3")] {
+                let choice = mode(&order).expect("a mode");
+                assert_eq!((choice.k, choice.near), (3.0, Some(expected)), "{order}");
+            }
+        }
+        assert_eq!(near("0.1"), Ok(C64::new(0.1, 0.0)));
+        let refused = "`x` is not a number; near accepts RE or RE:IM";
+        for text in ["x", "1:x", "1,x"] {
+            assert_eq!(near(text), Err(refused.to_owned()), "{text}");
+        }
+        for (text, words) in [
+            ("k=1,k=2", "`k=1,k=2` names k twice"),
+            ("k=1,near=1,near=2", "names near twice"),
+            ("near=1", "has no wavenumber"),
+            ("k=1,2", "`2` is no part of a mode"),
+        ] {
+            let message = mode(text).map(|_| ()).expect_err(text);
+            assert!(message.contains(words), "{message}");
+        }
+    }
 }

@@ -24,6 +24,7 @@ use arguments::{Arguments, Command, Common};
 use clap::Parser;
 use landau_report::library::Library;
 use landau_solver::error::Result;
+use landau_solver::file::Overwrite;
 use landau_solver::model::Model;
 use landau_solver::study::{Setup, check_resolution};
 use std::process::ExitCode;
@@ -140,8 +141,19 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
             study,
             out,
             shard,
+            force,
             json,
-        } => reproduce::reproduce(library, study.as_deref(), &out, shard.as_deref(), json),
+        } => {
+            let overwrite = Overwrite::forced(force);
+            reproduce::reproduce(
+                library,
+                study.as_deref(),
+                &out,
+                shard.as_deref(),
+                overwrite,
+                json,
+            )
+        }
         Command::Verify {
             model,
             k,

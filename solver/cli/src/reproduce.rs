@@ -7,6 +7,7 @@ use crate::progress::Bar;
 use landau_report::library::Library;
 use landau_report::reproduce::{Errata, Provenance, Study, Verdict, Workshop};
 use landau_solver::error::{Error, Result};
+use landau_solver::file::Overwrite;
 use landau_solver::study::shard::Share;
 use serde_json::json;
 use std::fs;
@@ -17,6 +18,7 @@ pub fn reproduce(
     study: Option<&Path>,
     out: &Path,
     shard: Option<&str>,
+    overwrite: Overwrite,
     json: bool,
 ) -> Result<()> {
     let path = match study {
@@ -27,7 +29,7 @@ pub fn reproduce(
     let errata = study.errata.as_ref();
     let errata = errata.map(|file| Errata::read(&study.home().join(file)));
     let errata = errata.transpose()?;
-    let shop = Workshop::new(library, &study, out, provenance())?;
+    let shop = Workshop::new(library, &study, out, overwrite, provenance())?;
     let formulas = inspect::formulas(shop.model()?.as_ref(), errata.as_ref())?;
     interrupt::keeping(Kept::Tasks(shop.kept().to_owned()));
     if let Some(text) = shard {

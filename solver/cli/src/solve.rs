@@ -74,7 +74,7 @@ pub fn amplitudes(
     order: usize,
     common: &Common,
 ) -> Result<()> {
-    let found = AmplitudesReport::compute(setup, modes, order)?;
+    let found = AmplitudesReport::compute(setup, modes, order, &Bar::new("expanding"))?;
     if common.json {
         say!("{}", found.json());
     } else {
@@ -151,6 +151,12 @@ fn over(setup: &Setup, text: &str) -> Result<Range> {
     if count < 1.0 || count.fract() != 0.0 || count > 1e6 {
         return Err(Error::input(format!(
             "--over {text}: COUNT is a whole number from 1 to 1000000"
+        )));
+    }
+    if !(numbers[1] - numbers[0]).is_finite() {
+        return Err(Error::input(format!(
+            "--over {text}: TO − FROM has to be a number, below {:.1e}",
+            f64::MAX
         )));
     }
     let axis = Axis::named(setup.model.as_ref(), &name)?;

@@ -4,9 +4,28 @@ use landau_solver::error::{Error, Result};
 use std::fmt::Arguments;
 use std::io::{self, ErrorKind, Write};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The first failure to write an answer.
 static FAILURE: Mutex<Option<io::Error>> = Mutex::new(None);
+
+/// Whether the program was started without a standard output, as by `>&-`.
+static CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// Looks at standard output before the standard library's start-up, which opens /dev/null in the place of a closed
+/// stream: afterwards every answer would seem to be written.
+#[cfg(any(target_os = "linux", target_os = "macos"))]
+#[used]
+#[cfg_attr(target_os = "linux", unsafe(link_section = ".init_array"))]
+#[cfg_attr(target_os = "macos", unsafe(link_section = "__DATA,__mod_init_func"))]
+static LOOK: extern "C" fn() = {
+    extern "C" fn look() {
+        // SAFETY: the call reads the flags of a descriptor, and fails where there is none.
+        let flags = unsafe { libc::fcntl(libc::STDOUT_FILENO, libc::F_GETFD) };
+        CLOSED.store(flags == -1, Ordering::Relaxed);
+    }
+    look
+};
 
 /// Prints a line of an answer. A failure is reported by [`finish`].
 macro_rules! say {
@@ -48,6 +67,11 @@ pub fn remember(written: io::Result<()>) {
 /// Standard output could not be written.
 pub fn finish() -> Result<()> {
     remember(io::stdout().lock().flush());
+    if CLOSED.load(Ordering::Relaxed) {
+        return Err(Error::input(
+            "the answer could not be written to standard output: it is closed",
+        ));
+    }
     let failure = FAILURE.lock().ok().and_then(|mut failure| failure.take());
     match failure {
         Some(error) if error.kind() != ErrorKind::BrokenPipe => Err(Error::input(format!(

@@ -18,7 +18,7 @@ use landau_solver::study::shard::{Share, merge};
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::verify::Certificate;
-use landau_solver::study::{Axis, Setup, check_wavenumber};
+use landau_solver::study::{Axis, Setup, Silent, check_wavenumber};
 use landau_solver::weakly::{Selection, Window, pattern};
 use landau_solver::words;
 use pyo3::prelude::*;
@@ -209,7 +209,7 @@ impl Core {
                 near: near.map(|(re, im)| C64::new(re, im)),
             });
             let choices: Vec<ModeChoice> = choices.collect();
-            let found = AmplitudesReport::compute(&setup, &choices, order)?;
+            let found = AmplitudesReport::compute(&setup, &choices, order, &Silent)?;
             Ok(with_text(found.json(), &found))
         })
     }

@@ -5,7 +5,7 @@ use super::error_bars::{Companion, Companions};
 use super::orders::HIGHEST;
 use super::states::States;
 use super::verify::residual_order;
-use super::{Setup, check_wavenumber};
+use super::{Progress, Setup, check_wavenumber};
 use crate::error::{Error, Result};
 use crate::measured::Measured;
 use crate::model::C64;
@@ -80,9 +80,17 @@ pub struct AmplitudesReport {
 impl AmplitudesReport {
     /// The amplitude equations of the chosen modes to an order, their equilibria and certificate.
     ///
+    /// The steps of `progress` are the modes, the orders of the expansion, its defect, the companions that the errors come
+    /// from, and the equilibria.
+    ///
     /// # Errors
     /// Modes that are not found or are one and the same, a resonance, a coefficient that is not converged.
-    pub fn compute(setup: &Setup, choices: &[ModeChoice], order: usize) -> Result<Self> {
+    pub fn compute(
+        setup: &Setup,
+        choices: &[ModeChoice],
+        order: usize,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
         if choices.is_empty() {
             return Err(Error::input("name at least one mode with --mode k=K"));
         }
@@ -94,14 +102,21 @@ impl AmplitudesReport {
         for choice in choices {
             check_wavenumber(choice.k.abs())?;
         }
+        let steps = choices.len() + order + 3;
+        progress.begin(steps);
         let base = setup.base(None)?;
         let problem = &setup.problem(&base)?;
-        let pairs = pairs(problem, choices)?;
-        let mut expansion = Expansion::to(problem, pairs.clone(), order)?;
-        let found = residual_order(&expansion);
-        let residual_order = found
+        let pairs = pairs(problem, choices, progress)?;
+        let mut expansion = Expansion::new(problem, pairs.clone())?;
+        while expansion.order() < order {
+            expansion.advance()?;
+            progress.advance(1);
+        }
+        let defect = residual_order(&expansion);
+        let residual_order = defect
             .slope
-            .ok_or_else(|| format!("rounding hides it, most of all in {}", found.row));
+            .ok_or_else(|| format!("rounding hides it, most of all in {}", defect.row));
+        progress.advance(1);
         let distances = expansion.distances();
         let multipliers = expansion.multipliers.clone();
         let slow_rate = slow_rate(problem, &pairs);
@@ -112,17 +127,23 @@ impl AmplitudesReport {
             .collect();
         // Two orders more: one of them may have no terms.
         expansion.advance()?;
+        progress.advance(1);
         let longer = expansion.last_coefficients();
+        progress.advance(1);
         let system = longer.part(1..=order);
         let next = longer.part(order + 1..=usize::MAX);
         let companions = Companions::of(setup, problem, &pairs);
-        let errors = errors(&companions, problem, &pairs, &system)?;
+        let computed = companions.iter().filter(|companion| companion.is_ok());
+        progress.begin(steps + computed.count());
+        let errors = errors(&companions, problem, &pairs, &system, progress)?;
         check_converged(setup, problem, &pairs, &system, &errors)?;
         if let Some(error) = multiplier_error(&multipliers, uncertainty(&system, &errors)) {
             return Err(error);
         }
         let q: Vec<f64> = modes.iter().map(|(q, _)| *q).collect();
         let states = States::of(&system, &errors, &next, &q);
+        progress.advance(1);
+        progress.end();
         let coefficient = |(term, error): (&weakly::Term, &f64)| Coefficient {
             monomial: term.monomial.clone(),
             g: Measured::new(term.g, *error),
@@ -222,7 +243,11 @@ pub fn small_divisors(distances: &[Distance], slow_rate: f64) -> Vec<&Distance> 
 }
 
 /// The modes that are asked for; one at −k goes with the one at k that has been named before it.
-fn pairs(problem: &Problem, choices: &[ModeChoice]) -> Result<Vec<EigenPair>> {
+fn pairs(
+    problem: &Problem,
+    choices: &[ModeChoice],
+    progress: &dyn Progress,
+) -> Result<Vec<EigenPair>> {
     let mut pairs: Vec<EigenPair> = Vec::new();
     for choice in choices {
         let opposite = pairs.iter().find(|pair| pair.k == -choice.k);
@@ -232,6 +257,7 @@ fn pairs(problem: &Problem, choices: &[ModeChoice]) -> Result<Vec<EigenPair>> {
             (None, _) => select(problem, choice.k, Selection::Leading)?,
         };
         pairs.push(pair);
+        progress.advance(1);
     }
     Ok(pairs)
 }
@@ -284,12 +310,15 @@ pub(super) fn errors(
     problem: &Arc<Problem>,
     pairs: &[EigenPair],
     system: &AmplitudeSystem,
+    progress: &dyn Progress,
 ) -> Result<Vec<Vec<f64>>> {
     let here = Expansion::new(problem, pairs.to_vec())?.modes;
     let flat: Vec<C64> = system.equations.iter().flatten().map(|t| t.g).collect();
     let order = system.order();
     let all = companions.errors(&flat, |companion| {
-        let there = beside(problem, &here, companion, order)?;
+        let there = beside(problem, &here, companion, order);
+        progress.advance(1);
+        let there = there?;
         let missing = C64::new(f64::NAN, 0.0);
         let mut values = Vec::with_capacity(flat.len());
         for (j, terms) in system.equations.iter().enumerate() {

@@ -46,6 +46,8 @@ pub struct Setup {
     pub parameters: Parameters,
     /// M
     pub resolution: usize,
+    /// Parameters that [`Setup::set`] was told, which an axis must not vary.
+    assigned: Vec<ParameterId>,
     /// Differentiation matrices, shared by all problems of the study.
     pub matrices: Arc<Matrices>,
     /// Base states that were solved, shared by all setups made from this one.
@@ -106,6 +108,7 @@ impl Setup {
             model,
             parameters,
             resolution,
+            assigned: Vec::new(),
             matrices: Arc::default(),
             bases: Arc::default(),
         }
@@ -114,17 +117,51 @@ impl Setup {
     /// Sets parameters from `NAME=VALUE`.
     ///
     /// # Errors
-    /// What is no assignment, a parameter that the model does not have, a value out of range.
+    /// What is no assignment, a parameter that the model does not have or that is set twice, a value out of range.
     pub fn set(&mut self, assignments: &[String]) -> Result<()> {
+        let model = self.model.clone();
+        let structure = model.structure();
+        let mut earlier: Vec<(ParameterId, &String)> = Vec::new();
         for assignment in assignments {
             let (name, value) = assignment.split_once('=').ok_or_else(|| {
                 let given = words::quoted(assignment);
                 Error::input(format!("--set {given}: --set accepts NAME=VALUE"))
             })?;
-            self.parameters
-                .set_text(self.model.structure(), name.trim(), value.trim())?;
+            let name = name.trim();
+            let parameter = Parameters::named(structure, name)?;
+            if let Some((_, first)) = earlier.iter().find(|(id, _)| *id == parameter) {
+                return Err(Error::input(format!(
+                    "`{name}` is set twice, by `{}` and by `{}`: a parameter accepts one value",
+                    words::quoted(first),
+                    words::quoted(assignment)
+                )));
+            }
+            self.parameters.set_text(structure, name, value.trim())?;
+            earlier.push((parameter, assignment));
         }
+        self.assigned.extend(earlier.iter().map(|(id, _)| *id));
         Ok(())
+    }
+
+    /// Refuses an axis whose values another option fixes: a parameter that was set, the wavenumber beside `k`.
+    ///
+    /// # Errors
+    /// Such an axis.
+    pub fn check_free(&self, axis: Axis, k: Option<f64>) -> Result<()> {
+        match (axis, k) {
+            (Axis::Wavenumber, Some(k)) => Err(Error::input(format!(
+                "k varies, and k = {k} is given too: give the axis or --k, not both"
+            ))),
+            (Axis::Parameter(id), _) if self.assigned.contains(&id) => {
+                let structure = self.model.structure();
+                let name = &structure.parameters[id].name;
+                let value = self.parameters.shown(structure, id);
+                Err(Error::input(format!(
+                    "`{name}` varies, and {name} = {value} is set too: give the axis or --set {name}, not both"
+                )))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The sources of the model, spec and laws, as a short number.

@@ -9,7 +9,7 @@ use super::accuracy::{
 use super::amplitudes::{errors, small_divisors};
 use super::error_bars::Companions;
 use super::orders::check_order;
-use super::{Setup, check_wavenumber, sensitivity};
+use super::{Setup, Silent, check_wavenumber, sensitivity};
 use crate::error::{Error, Result};
 use crate::measured::{Decided, Measured};
 use crate::model::C64;
@@ -262,7 +262,7 @@ fn longer(
     }
     let words = words(&expansion.distances());
     let system = expansion.last_coefficients();
-    let errors = errors(companions, &point.problem, &pairs, &system)?;
+    let errors = errors(companions, &point.problem, &pairs, &system, &Silent)?;
     for (term, &error) in system.equations[0].iter().zip(&errors[0]).skip(2) {
         let degree = term.monomial.degree();
         let size = term.g.norm();
@@ -293,7 +293,7 @@ fn waves(setup: &Setup, point: &LandauPoint) -> Option<std::result::Result<Waves
     let both = || -> Result<Waves> {
         let system = Expansion::to(&point.problem, pairs.to_vec(), 2)?.last_coefficients();
         let companions = Companions::of(setup, &point.problem, &pairs);
-        let errors = errors(&companions, &point.problem, &pairs, &system)?;
+        let errors = errors(&companions, &point.problem, &pairs, &system, &Silent)?;
         Ok(Waves::of(&system, &errors[0]))
     };
     let reason = |error: Error| format!("left and right waves: {error}");

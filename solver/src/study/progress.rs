@@ -2,7 +2,7 @@
 
 /// Somebody who is told.
 pub trait Progress: Sync {
-    /// Steps in all.
+    /// Steps in all; again where more of them turn up on the way.
     fn begin(&self, steps: usize);
     /// Steps done since; none at the start of a longer stretch. It may unwind to end the work, which leaves files
     /// and journals as they are after any interruption.

@@ -69,7 +69,8 @@ impl<'s> Sweep<'s> {
     /// A sweep over `ranges`, with the wavenumber `k` where none of them varies it.
     ///
     /// # Errors
-    /// No range, an empty one, two of one name, a value that its parameter does not accept, a missing wavenumber.
+    /// No range, an empty one, two of one name, one that `k` or the setup fixes, a value that its parameter does not accept,
+    /// a missing wavenumber.
     pub fn new(
         setup: &'s Setup,
         ranges: Vec<Range>,
@@ -88,6 +89,7 @@ impl<'s> Sweep<'s> {
             if ranges[..index].iter().any(|r| r.axis == range.axis) {
                 return Err(Error::input(format!("`{name}` varies twice")));
             }
+            setup.check_free(range.axis, k)?;
             for &value in &range.values {
                 match range.axis {
                     Axis::Wavenumber => check_wavenumber(value)?,

@@ -1,30 +1,31 @@
 //! Files of a study and of its report: read up to a size, written only where they are the report's.
 
+use super::ledger::{self, MARK};
 use super::study::Study;
 use landau_solver::error::{Error, Result};
-use landau_solver::file::{TEXT_LIMIT, hash, read_text, write_whole};
+use landau_solver::file::{Overwrite, TEXT_LIMIT, hash, read_text, write_whole};
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
-/// The file by which a folder is known as one of a report.
-const MARK: &str = ".landau-report";
 /// How files begin that are on their way into a folder, the mark among them.
 const ON_THE_WAY: &str = ".landau-";
-const MARK_TEXT: &str =
-    "landau reproduce writes its report here, and replaces files of an earlier one.\n";
 
 /// A folder that belongs to a report: nothing of others is in it.
 #[derive(Clone, Debug)]
 pub struct Shelf {
     folder: PathBuf,
+    /// Whether it is the report itself, which lists its files.
+    has_ledger: bool,
 }
 
 impl Shelf {
     /// A folder for a report: new, empty, or one that holds the mark of a report.
     ///
     /// # Errors
-    /// A folder with anything else in it, a path that is no folder, one without a name of its own.
-    pub fn new(folder: &Path) -> Result<Self> {
+    /// A folder with anything else in it, a path that is no folder, one without a name of its own; in the folder of a
+    /// report a file that would be replaced and is not the report's, unless `overwrite` allows it.
+    pub fn new(folder: &Path, overwrite: Overwrite) -> Result<Self> {
         let wrong = |what: &str| Err(Error::input(format!("{}: {what}", folder.display())));
         if folder.file_name().is_none() {
             return wrong("a report accepts a folder of its own, by its name");
@@ -42,32 +43,44 @@ impl Shelf {
                 );
             }
         }
+        ledger::check(folder, overwrite)?;
         Ok(Shelf {
             folder: folder.to_owned(),
+            has_ledger: true,
         })
     }
 
     /// The folder beside a report in which its finished tasks are kept: new, empty, beside a report that is marked, or
-    /// with kept tasks alone.
+    /// with kept tasks alone. `is_kept` fails where a file cannot be read; such a file may be a kept task, and stays.
     ///
     /// # Errors
     /// A folder with anything else in it.
-    pub fn beside(&self, is_kept: impl Fn(&Path) -> bool) -> Result<Self> {
+    pub fn beside(&self, is_kept: impl Fn(&Path) -> io::Result<bool>) -> Result<Self> {
         let mut name = self.folder.file_name().unwrap_or_default().to_owned();
         name.push(".kept");
         let folder = self.folder.with_file_name(name);
-        let entries = fs::read_dir(&folder).into_iter().flatten();
-        let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-        let foreign = |path: PathBuf| !is_on_the_way(&path) && !is_kept(&path);
-        let is_link = fs::symlink_metadata(&folder).is_ok() && !folder.is_dir();
-        if is_link || (!self.folder.join(MARK).is_file() && paths.any(foreign)) {
-            return Err(Error::input(format!(
-                "{}: finished tasks are kept here, and it holds other files: a report accepts another --out, or this \
-                 folder without them",
+        let wrong = |what: &str| {
+            Err(Error::input(format!(
+                "{}: finished tasks are kept here, and {what}: a report accepts another --out, or this folder without it",
                 folder.display()
-            )));
+            )))
+        };
+        if fs::symlink_metadata(&folder).is_ok() && !folder.is_dir() {
+            return wrong("this is no folder");
         }
-        Ok(Shelf { folder })
+        if !self.folder.join(MARK).is_file() {
+            let entries = fs::read_dir(&folder).into_iter().flatten();
+            let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+            let is_foreign =
+                |path: &PathBuf| !is_on_the_way(path) && !is_kept(path).unwrap_or(true);
+            if let Some(path) = paths.find(is_foreign) {
+                return wrong(&format!("{} is none", path.display()));
+            }
+        }
+        Ok(Shelf {
+            folder,
+            has_ledger: false,
+        })
     }
 
     /// Makes the folder.
@@ -85,10 +98,15 @@ impl Shelf {
     /// Permissions, a full disk.
     pub fn open(&self) -> Result<()> {
         self.make()?;
-        if self.folder.join(MARK).is_file() {
-            return Ok(());
-        }
-        write_whole(&self.folder.join(MARK), MARK_TEXT.as_bytes())
+        ledger::mark(&self.folder)
+    }
+
+    /// Everything is written: each file of the report is listed once.
+    ///
+    /// # Errors
+    /// Permissions, a full disk.
+    pub fn close(&self) -> Result<()> {
+        ledger::settle(&self.folder)
     }
 
     /// The folder itself.
@@ -126,6 +144,9 @@ impl Shelf {
         if let Some(folder) = path.parent().filter(|folder| !folder.is_dir()) {
             fs::create_dir_all(folder)
                 .map_err(|e| Error::input(format!("{} cannot be made: {e}", folder.display())))?;
+        }
+        if self.has_ledger {
+            ledger::add(&self.folder, name, bytes)?;
         }
         write_whole(&path, bytes)
     }
@@ -169,6 +190,7 @@ impl Study {
 #[cfg(test)]
 mod tests {
     use super::{MARK, Shelf, is_plain};
+    use landau_solver::file::Overwrite::Recognised;
     use std::fs;
     use std::path::Path;
 
@@ -196,11 +218,11 @@ mod tests {
     fn folders_of_others_are_left_alone() {
         let folder = tempfile::tempdir().expect("a folder");
         let report = folder.path().join("report");
-        let shelf = Shelf::new(&report).expect("a new folder");
+        let shelf = Shelf::new(&report, Recognised).expect("a new folder");
         shelf.open().expect("made");
         shelf.write("sources/a.toml", b"one").expect("written");
         assert!(report.join(MARK).is_file());
-        Shelf::new(&report).expect("an earlier report");
+        Shelf::new(&report, Recognised).expect("an earlier report");
         // A link in the place of a file, and a folder of others.
         let foreign = folder.path().join("mine.txt");
         fs::write(&foreign, "mine").expect("written");
@@ -208,10 +230,10 @@ mod tests {
         assert!(shelf.write("index.html", b"ours").is_err());
         assert_eq!(fs::read(&foreign).expect("read"), b"mine");
         assert!(shelf.write("../mine.txt", b"ours").is_err());
-        assert!(Shelf::new(folder.path()).is_err());
-        assert!(Shelf::new(&foreign).is_err());
+        assert!(Shelf::new(folder.path(), Recognised).is_err());
+        assert!(Shelf::new(&foreign, Recognised).is_err());
         for path in [".", "/", ".."] {
-            assert!(Shelf::new(Path::new(path)).is_err(), "{path}");
+            assert!(Shelf::new(Path::new(path), Recognised).is_err(), "{path}");
         }
     }
 }

@@ -7,7 +7,7 @@ use super::workshop::Workshop;
 use landau_solver::error::{Error, Result};
 use serde::{Deserialize, Serialize};
 use std::fs;
-use std::io::Read;
+use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
 /// What stands around the content of a kept task.
@@ -26,6 +26,17 @@ struct Kept {
 }
 
 impl Workshop<'_> {
+    /// The file of a kept task that is there and cannot be read, and why: it stays as it is.
+    pub(super) fn unreadable(&self, stem: &str) -> Option<String> {
+        let path = self.kept.path(&format!("{stem}.json")).ok()?;
+        match fs::File::open(&path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                Some(format!("{} cannot be read: {error}", path.display()))
+            }
+            _ => None,
+        }
+    }
+
     /// A finished task, where it is kept as it was left and was made from the same.
     pub(super) fn kept_task(&self, stem: &str, made_from: &str) -> Option<Outcome> {
         let path = self.kept.path(&format!("{stem}.json")).ok()?;
@@ -88,11 +99,18 @@ impl Workshop<'_> {
 }
 
 /// Whether a file is a kept task, whole or not.
-pub(super) fn is_kept(path: &Path) -> bool {
+///
+/// # Errors
+/// A file with the name of a kept task that cannot be opened.
+pub(super) fn is_kept(path: &Path) -> io::Result<bool> {
     let is_json = path.extension().is_some_and(|e| e == "json");
+    // Looked at before it is opened, for to open a pipe is to wait for its other end.
+    if !is_json || !fs::symlink_metadata(path)?.is_file() {
+        return Ok(false);
+    }
     let mut start = [0; SEAL.len()];
-    let read = fs::File::open(path).and_then(|mut file| file.read_exact(&mut start));
-    is_json && read.is_ok() && start == *SEAL.as_bytes()
+    let read = fs::File::open(path)?.read_exact(&mut start);
+    Ok(read.is_ok() && start == *SEAL.as_bytes())
 }
 
 /// Content with its seal.

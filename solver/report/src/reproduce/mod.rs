@@ -9,6 +9,7 @@ mod errata;
 mod feasible;
 mod files;
 mod keep;
+mod ledger;
 mod outcome;
 mod page;
 mod run;

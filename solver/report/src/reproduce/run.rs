@@ -37,6 +37,7 @@ impl Workshop<'_> {
         outcomes.into_iter().for_each(|outcome| whole.add(outcome));
         self.write_json("numbers.json", &whole.numbers)?;
         self.write_json("claims.json", &whole.claims)?;
+        self.shelf.close()?;
         Ok(whole)
     }
 
@@ -82,7 +83,7 @@ impl Workshop<'_> {
         progress.begin(tasks.len());
         for unit in tasks {
             let started = Instant::now();
-            take(unit, self.task(unit)?);
+            take(unit, self.task(unit, progress)?);
             progress.done(&format!(
                 "figure {}, task {} ({}): {:.1} s",
                 unit.figure.id,
@@ -103,7 +104,7 @@ impl Workshop<'_> {
     }
 
     /// One task, from an earlier run where that has finished it.
-    fn task(&self, unit: &Unit) -> Result<Outcome> {
+    fn task(&self, unit: &Unit, progress: &dyn Progress) -> Result<Outcome> {
         let figure = &unit.figure.id;
         let stem = format!("{figure}-{}", unit.index + 1);
         let made_from = self.made_from(&stem, unit.task)?;
@@ -111,6 +112,12 @@ impl Workshop<'_> {
             return Ok(outcome);
         }
         let outcome = task::run(self, figure, &stem, unit.task)?;
+        if let Some(reason) = self.unreadable(&stem) {
+            progress.done(&format!(
+                "note: {reason}; its task is computed again, and the file stays as it is"
+            ));
+            return Ok(outcome);
+        }
         self.keep(&stem, &made_from, &outcome)?;
         Ok(outcome)
     }

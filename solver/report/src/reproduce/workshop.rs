@@ -7,6 +7,7 @@ use super::study::{Case, Study};
 use super::symbols;
 use crate::library::Library;
 use landau_solver::error::Result;
+use landau_solver::file::Overwrite;
 use landau_solver::model::Model;
 use landau_solver::study::Setup;
 use std::collections::BTreeMap;
@@ -42,14 +43,16 @@ impl<'a> Workshop<'a> {
     /// A study, the models for it and the folder of its report. Nothing is computed or written.
     ///
     /// # Errors
-    /// A folder that holds other things than a report; a study that asks its models for what they do not have.
+    /// A folder that holds other things than a report, or files of it that were changed since and that `overwrite` does
+    /// not allow to replace; a study that asks its models for what they do not have.
     pub fn new(
         library: &'a Library,
         study: &'a Study,
         out: &Path,
+        overwrite: Overwrite,
         provenance: Provenance,
     ) -> Result<Self> {
-        let shelf = Shelf::new(out)?;
+        let shelf = Shelf::new(out, overwrite)?;
         let shop = Workshop {
             study,
             provenance,

@@ -112,9 +112,10 @@ fn where_largest(
 ) -> Result<Value> {
     let missing = || Error::input("a statement about a largest value needs `over`: an axis");
     let over = statement.over.as_ref().ok_or_else(missing)?;
+    // The wavenumber of a case is meant for statements that have no axis of k.
     let rows = rows(
         setup,
-        case.k,
+        case.k.filter(|_| over.name != "k"),
         &over.name,
         over.values(),
         RowMode::Leading,

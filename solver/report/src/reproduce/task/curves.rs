@@ -305,7 +305,7 @@ pub(super) fn power_law(
             .map(|i| distances[0].signum() * near * (far / near).powf(i as f64 / steps))
             .collect();
         let values = relative.iter().map(|d| place * (1.0 + d)).collect();
-        let k = asked.k.or(case.k);
+        let k = asked.k.or(case.k).filter(|_| asked.vary != "k");
         let rows = rows(&setup, k, &asked.vary, values, RowMode::Leading, &[])?;
         let points: Vec<(f64, f64)> = relative
             .iter()

@@ -1,6 +1,6 @@
 //! Statements: whether something decides them.
 
-use super::{Checked, Spot, axis, critical, each_has_k};
+use super::{Checked, Spot, axis, critical, each_has_k, not_set};
 use crate::reproduce::study::{Case, Quantity, Statement};
 
 /// A statement of a task, its bound and the number that decides it.
@@ -14,6 +14,9 @@ pub(super) fn statement(
     words(&spot, statement)?;
     bounds(&spot, statement, cases)?;
     number(&spot, statement, cases)?;
+    if let Some(over) = &statement.over {
+        not_set(task, cases, &over.name)?;
+    }
     match needs_k(statement) {
         Some(why) => each_has_k(task, cases, &why),
         None => Ok(()),

@@ -113,6 +113,9 @@ impl Spot {
         let so = from.is_finite() && to.is_finite() && from < to;
         self.key(key).demand(so, || {
             format!("{key} = [{from}, {to}]: it accepts two finite numbers, the lower first")
+        })?;
+        self.key(key).demand((to - from).is_finite(), || {
+            format!("{key} = [{from:e}, {to:e}]: it accepts a range whose width is a number, below {:.1e}", f64::MAX)
         })
     }
 }
@@ -200,7 +203,54 @@ fn axis(spot: &Spot, key: &str, axis: &Axis) -> Checked {
             "`{}` by equal factors accepts numbers above zero",
             axis.name
         )
+    })?;
+    // Values lie at parts of the width, or of the quotient.
+    let (what, size) = match axis.spacing {
+        Spacing::Even => ("width", axis.to - axis.from),
+        Spacing::Geometric => ("quotient", axis.to / axis.from),
+    };
+    spot.key("to").demand(size.is_finite(), || {
+        format!(
+            "`{}` goes from {:e} to {:e}: an axis accepts ends whose {what} is a number, below {:.1e}",
+            axis.name,
+            axis.from,
+            axis.to,
+            f64::MAX
+        )
     })
+}
+
+/// Refuses cases that fix what an axis varies.
+fn free(spot: &Spot, cases: &[Case], axis: &Axis) -> Checked {
+    let name = &axis.name;
+    if name == "k" {
+        for (index, case) in cases.iter().enumerate() {
+            let k = case.k.unwrap_or_default();
+            spot.case(index, case)
+                .key("k")
+                .demand(case.k.is_none(), || {
+                    format!("k = {k} stands beside an axis of k: a task accepts one of the two")
+                })?;
+        }
+    }
+    not_set(spot, cases, name)
+}
+
+/// Refuses cases that set a parameter which varies.
+fn not_set(spot: &Spot, cases: &[Case], name: &str) -> Checked {
+    for (index, case) in cases.iter().enumerate() {
+        let sets = |text: &&String| text.split_once('=').is_some_and(|(n, _)| n.trim() == name);
+        let set = case.set.iter().find(sets);
+        spot.case(index, case)
+            .key("set")
+            .demand(set.is_none(), || {
+                format!(
+                    "`{}` stands beside an axis of {name}: a task accepts one of the two",
+                    set.map_or("", String::as_str)
+                )
+            })?;
+    }
+    Ok(())
 }
 
 /// An axis that can be nothing but the wavenumber.

@@ -1,7 +1,7 @@
 //! Tasks, one kind after another.
 
 use super::critical::{asked, question};
-use super::{Checked, Spot, along_k, axis, claims, each_has_k, points};
+use super::{Checked, Spot, along_k, axis, claims, each_has_k, free, not_set, points};
 use crate::reproduce::study::{Asked, Axis, Case, Reference, Tail, Task, Together};
 use landau_solver::study::orders::HIGHEST;
 
@@ -35,6 +35,7 @@ pub(super) fn check(spot: &Spot, task: &Task) -> Checked {
             ..
         } => {
             asked(&spot.key("critical"), critical, cases)?;
+            not_set(spot, cases, &critical.vary)?;
             power_law(spot, critical, *distances, *count)?;
             points(spot, cases, &[*count])
         }
@@ -93,6 +94,7 @@ fn by_resolution(spot: &Spot, task: &Task) -> Checked {
             resolutions,
         } => {
             along_k(spot, over)?;
+            free(spot, case, over)?;
             of_resolutions(spot, resolutions)?;
             points(spot, case, &[over.count, resolutions.len()])
         }
@@ -127,6 +129,7 @@ fn rows(spot: &Spot, task: &Task) -> Checked {
         }
         Task::Resonance { case, over, mark } => {
             along_k(spot, over)?;
+            free(spot, case, over)?;
             marks(spot, mark, "k", case)?;
             points(spot, case, &[over.count, 2])
         }
@@ -163,6 +166,7 @@ fn beyond_cubic(spot: &Spot, task: &Task) -> Checked {
             reference,
         } => {
             along_k(spot, over)?;
+            free(spot, case, over)?;
             let so = !highest.is_multiple_of(2) && (5..=HIGHEST).contains(highest);
             spot.key("highest").demand(so, || {
                 format!(
@@ -180,6 +184,7 @@ fn beyond_cubic(spot: &Spot, task: &Task) -> Checked {
         }
         Task::SecondHarmonic { case, over } => {
             along_k(spot, over)?;
+            free(spot, case, over)?;
             points(spot, case, &[over.count])
         }
         _ => Ok(()),
@@ -211,6 +216,7 @@ fn planes(spot: &Spot, task: &Task) -> Checked {
             spot.key("over").key("name").demand(over.name != "k", || {
                 "name = `k`: a circulation goes along a parameter, at one `k`".to_owned()
             })?;
+            free(spot, case, over)?;
             spot.wavenumber("k", *k)?;
             let so = *side > 0.0 && *side <= 1.0;
             spot.key("side").demand(so, || {
@@ -222,8 +228,9 @@ fn planes(spot: &Spot, task: &Task) -> Checked {
     }
 }
 
-/// Where a parameter varies, every case says at which wavenumber.
+/// Where a parameter varies, every case says at which wavenumber; no case fixes what varies.
 fn each_along(spot: &Spot, cases: &[Case], over: &Axis) -> Checked {
+    free(spot, cases, over)?;
     if over.name == "k" {
         return Ok(());
     }
@@ -284,6 +291,7 @@ fn critical(spot: &Spot, cases: &[Case], list: &[Asked], against: Option<&Axis>)
     }
     if let Some(over) = against {
         axis(spot, "against", over)?;
+        free(spot, cases, over)?;
     }
     let values = against.map_or(1, |axis| axis.count);
     points(spot, cases, &[values, list.len()])
