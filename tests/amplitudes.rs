@@ -1,10 +1,13 @@
 //! Amplitude equations of several modes, against coefficients that are exact or from an independent program of 80
 //! bits; their equilibria.
 
-use crate::support::{close, json, landau, number, written};
+use crate::support::{built, close, json, landau, number, written};
 use landau_solver::model::C64;
 use landau_solver::series::Monomial;
+use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
+use landau_solver::study::{Progress, Setup};
 use serde_json::Value;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The coefficient of a monomial, named as it is printed, in the equation of one mode.
 fn coefficient(found: &Value, mode: usize, name: &str) -> C64 {
@@ -423,6 +426,41 @@ fn equilibria_by_hand() {
     let travelling = -0.05 / own.re;
     let drift = -(c0.im + own.im * travelling);
     close("the drift", number(&states[0], "/drift"), drift, 1e-10);
+}
+
+/// Counts the steps that are announced and done.
+#[derive(Default)]
+struct Steps {
+    announced: AtomicUsize,
+    done: AtomicUsize,
+    ended: AtomicUsize,
+}
+
+impl Progress for Steps {
+    fn begin(&self, steps: usize) {
+        self.announced.store(steps, Ordering::Relaxed);
+    }
+
+    fn advance(&self, steps: usize) {
+        self.done.fetch_add(steps, Ordering::Relaxed);
+    }
+
+    fn end(&self) {
+        self.ended.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+/// Two modes, three orders beyond the first and the next two, the defect, the equilibria, and the companions that a model
+/// without a cross-stream coordinate has: three draws of noise.
+#[test]
+fn every_step_is_told() {
+    let steps = Steps::default();
+    let setup = Setup::new(built("swift_hohenberg"), 50);
+    let modes = [1.0, -1.0].map(|k| ModeChoice { k, near: None });
+    AmplitudesReport::compute(&setup, &modes, 4, &steps).expect("the equations");
+    let counts = [&steps.announced, &steps.done, &steps.ended].map(|n| n.load(Ordering::Relaxed));
+    let expected = 2 + 3 + 2 + 1 + 1 + 3;
+    assert_eq!(counts, [expected, expected, 1]);
 }
 
 #[test]

@@ -116,6 +116,31 @@ fn bad_input_is_refused_in_a_sentence() {
             2,
             "/nowhere",
         ),
+        (
+            "sweep swift_hohenberg --over k=0.9:1:3 --k 3 --out /tmp/never.csv",
+            2,
+            "k varies, and k = 3 is given too",
+        ),
+        (
+            "sweep swift_hohenberg --over r=0.1:0.2:3 --set r=0.3 --k 1 --out /tmp/never.csv",
+            2,
+            "`r` varies, and r = 0.3 is set too",
+        ),
+        (
+            "sweep swift_hohenberg --over r=-1e308:1e308:3 --k 1 --out /tmp/never.csv",
+            2,
+            "TO − FROM has to be a number",
+        ),
+        (
+            "point swift_hohenberg --set r=0.1 --set r=0.2",
+            2,
+            "`r` is set twice, by `r=0.1` and by `r=0.2`",
+        ),
+        (
+            "amplitudes swift_hohenberg --mode k=1,k=2",
+            2,
+            "names k twice",
+        ),
         ("check /nowhere/a.model", 2, "cannot be read"),
         ("explain vibrated_bed --operator N4", 2, "possible values"),
     ] {
@@ -129,6 +154,35 @@ fn bad_input_is_refused_in_a_sentence() {
         assert!(answer.err.contains(words), "{line}: {}", answer.err);
         assert_eq!(answer.out, "", "{line} prints no number");
     }
+}
+
+/// Empty columns of a table are explained below it.
+#[test]
+fn a_missing_adjoint_spectrum_is_explained() {
+    let line = "spectrum vibrated_bed --k 0.1 -M 20 --set top=decaying";
+    let arguments: Vec<&str> = line.split_whitespace().collect();
+    let answer = landau(&arguments);
+    assert_eq!(answer.status, 0, "{}", answer.err);
+    let last = answer.out.lines().last().unwrap_or_default();
+    let words = "the columns of L† are empty: no adjoint boundary conditions";
+    assert!(last.starts_with(words), "{}", answer.out);
+}
+
+/// An eigenvalue is spelled alike in `--near` and in `--mode`.
+#[test]
+fn an_eigenvalue_has_one_spelling_everywhere() {
+    let point = |near: &str| {
+        json(&format!(
+            "point brusselator --k 0.8 --set A=2 --set B=6 --near {near}"
+        ))
+    };
+    assert_eq!(point("0:1"), point("0,1"));
+    let modes = |near: &str| {
+        json(&format!(
+            "amplitudes brusselator --set A=2 --set B=6 --mode k=0.8,near={near}"
+        ))
+    };
+    assert_eq!(modes("0:1"), modes("0,1"));
 }
 
 #[test]

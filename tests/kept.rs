@@ -232,6 +232,22 @@ fn an_answer_that_cannot_be_written_is_no_answer() {
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(0), "{line:?}: {said}");
         assert!(!said.contains("panic"), "{line:?}: {said}");
+        // Without any standard output, which the standard library replaces by /dev/null.
+        let output = Command::new("sh")
+            .args(["-c", "exec \"$@\" >&-", "sh"])
+            .arg(env!("CARGO_BIN_EXE_landau-under-test"))
+            .args(line)
+            .current_dir(root())
+            .output()
+            .expect("a shell");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{line:?}: {said}");
+        assert!(
+            said.ends_with(
+                "error: the answer could not be written to standard output: it is closed\n"
+            ),
+            "{line:?}: {said}"
+        );
     }
 }
 

@@ -34,6 +34,8 @@ mod published;
 mod published_bed;
 mod readme;
 mod recipes;
+
+mod replaced;
 mod reports;
 mod reproduce;
 mod shards;

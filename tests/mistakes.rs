@@ -156,6 +156,16 @@ AGAINST | [-0.5, 0.9] } | [-0.5, 0.9], k = 1.0 } | one wavenumber
 POWER_LAW | [1e-4, 1e-2] | [1e-2, 1e-4] | the nearer first
 POWER_LAW | [1e-4, 1e-2] | [-1e-4, 1e-2] | one sign
 POWER_LAW | [1e-4, 1e-2] | [0.0, 1e-2] | one sign
+SWEEP | from = 0.1, to = 0.5 | from = -1e308, to = 1e308 | from -1e308 to 1e308 & width is a number
+SWEEP | from = 0.1, to = 0.5, count = 5 | from = 1e-300, to = 1e300, count = 5, spacing = "geometric" | quotient
+CRITICAL | [-0.2, 0.9] | [-1e308, 1e308] | between = [-1e308, 1e308] & width is a number
+# Cases that fix what varies.
+SWEEP | k = 1.0 | k = 1.0⏎set = ["r=0.2"] | `r=0.2` stands beside an axis of r & accepts one of the two
+SWEEP | name = "r" | name = "k" | k = 1 stands beside an axis of k & accepts one of the two
+ORDERS | [[figure.task.case]] | [[figure.task.case]]⏎k = 1.0 | k = 1 stands beside an axis of k
+AGAINST | [[figure.task.case]] | [[figure.task.case]]⏎k = 1.0 | k = 1 stands beside an axis of k
+POWER_LAW | set = ["b=0"] | set = ["r=0"] | `r=0` stands beside an axis of r
+VALUES | k = 1.0 | k = 1.0⏎set = ["r=0.1", "r=0.2"] | `r` is set twice, by `r=0.1` and by `r=0.2`
 # Counts.
 SWEEP | count = 5 | count = 1000000000 | count = 1000000000 & from 2 to 10000
 SWEEP | count = 5 | count = 1 | count = 1 & from 2 to 10000
@@ -296,6 +306,18 @@ fn mistakes_have_their_line() {
     let desk = Desk::new();
     for (task, good, bad, line) in [
         (SWEEP, "count = 5", "count = 0", "over = { name = \"r\""),
+        (
+            SWEEP,
+            "from = 0.1, to = 0.5",
+            "from = -1e308, to = 1e308",
+            "over = { name = \"r\", from = -1e308",
+        ),
+        (
+            SWEEP,
+            "k = 1.0",
+            "k = 1.0\nset = [\"r=0.2\"]",
+            "set = [\"r=0.2\"]",
+        ),
         (SWEEP, "k = 1.0", "", "[[figure.task.case]]"),
         (CONVERGENCE, "[8, 16]", "[8, 0]", "resolutions = [8, 0]"),
         (

@@ -18,7 +18,7 @@ use landau_solver::study::shard::{Share, merge};
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::verify::Certificate;
-use landau_solver::study::{Axis, Setup, Silent, check_wavenumber};
+use landau_solver::study::{Axis, Setup, Silent, check_resolution, check_wavenumber};
 use landau_solver::weakly::{Selection, Window, pattern};
 use landau_solver::words;
 use pyo3::prelude::*;
@@ -30,7 +30,7 @@ use std::sync::Arc;
 type Near = Option<(f64, f64)>;
 
 fn setup(model: Arc<dyn Model>, set: &[String], resolution: usize) -> Result<Setup> {
-    if !(4..=1000).contains(&resolution) {
+    if check_resolution(resolution).is_err() {
         return Err(Error::input(format!(
             "M = {resolution} is out of range: it accepts 4 to 1000"
         )));
@@ -46,35 +46,47 @@ fn selection(near: Near) -> Selection<'static> {
     })
 }
 
-/// A sweep over named axes.
-fn swept<'s>(
-    setup: &'s Setup,
+/// What is swept: the items of a dictionary, which a task of a cluster gets as a whole.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Assignment {
+    set: Vec<String>,
+    resolution: usize,
+    /// Names and values; the first varies fastest.
     axes: Vec<(String, Vec<f64>)>,
     k: Option<f64>,
-    mode: RowMode,
-    columns: &[String],
-) -> Result<Sweep<'s>> {
-    let ranges = axes
-        .into_iter()
-        .map(|(name, values)| {
-            let axis = Axis::named(setup.model.as_ref(), &name)?;
-            Ok(Range { name, axis, values })
-        })
-        .collect::<Result<_>>()?;
-    let derived = columns
-        .iter()
-        .map(|text| column(setup.model.as_ref(), text))
-        .collect::<Result<_>>()?;
-    Sweep::new(setup, ranges, k, mode, derived)
+    near: Near,
+    follow: bool,
+    columns: Vec<String>,
 }
 
-/// The mode that rows hold: `near` names one, `follow` keeps to it along the first axis.
-fn row_mode(near: Near, follow: bool) -> RowMode {
-    let near = near.map(|(re, im)| C64::new(re, im));
-    match near {
-        near if follow => RowMode::Followed(near),
-        Some(target) => RowMode::Nearest(target),
-        None => RowMode::Leading,
+impl Assignment {
+    fn setup(&self, model: Arc<dyn Model>) -> Result<Setup> {
+        setup(model, &self.set, self.resolution)
+    }
+
+    fn sweep<'s>(&self, setup: &'s Setup) -> Result<Sweep<'s>> {
+        let model = setup.model.as_ref();
+        let range = |(name, values): &(String, Vec<f64>)| {
+            Ok(Range {
+                name: name.clone(),
+                axis: Axis::named(model, name)?,
+                values: values.clone(),
+            })
+        };
+        let ranges = self.axes.iter().map(range).collect::<Result<_>>()?;
+        let columns = self.columns.iter().map(|text| column(model, text));
+        let columns = columns.collect::<Result<_>>()?;
+        Sweep::new(setup, ranges, self.k, self.mode(), columns)
+    }
+
+    /// The mode that rows hold: `near` names one, `follow` keeps to it along the first axis.
+    fn mode(&self) -> RowMode {
+        match self.near.map(|(re, im)| C64::new(re, im)) {
+            near if self.follow => RowMode::Followed(near),
+            Some(target) => RowMode::Nearest(target),
+            None => RowMode::Leading,
+        }
     }
 }
 
@@ -112,18 +124,18 @@ fn quantity(of: &str) -> Result<Quantity> {
     }
 }
 
-fn modes(found: &Modes) -> Value {
-    let parts =
+fn modes(modes: &Modes) -> Value {
+    let numbers =
         |values: &[C64]| -> Vec<Value> { values.iter().map(|v| words::complex(*v)).collect() };
-    let profiles = found.profiles.iter().map(|profile| {
-        let own = profile.parts.iter().zip(&profile.values);
-        let own: Vec<(&String, Vec<Value>)> = own.map(|(p, v)| (p, parts(v))).collect();
-        json!([profile.name, own])
+    let profiles = modes.profiles.iter().map(|profile| {
+        let parts = profile.parts.iter().zip(&profile.values);
+        let parts: Vec<(&String, Vec<Value>)> = parts.map(|(p, v)| (p, numbers(v))).collect();
+        json!([profile.name, parts])
     });
     json!({
-        "parameters": found.parameters,
-        "k": found.k,
-        "y": found.heights,
+        "parameters": modes.parameters,
+        "k": modes.k,
+        "y": modes.heights,
         "modes": profiles.collect::<Vec<_>>(),
     })
 }
@@ -140,8 +152,8 @@ impl Core {
     ) -> PyResult<String> {
         let model = self.model.clone();
         watched(py, move |_| {
-            let found = BaseReport::compute(&setup(model, &set, resolution)?, points)?;
-            Ok(found.json().to_string())
+            let report = BaseReport::compute(&setup(model, &set, resolution)?, points)?;
+            Ok(report.json().to_string())
         })
     }
 
@@ -154,8 +166,8 @@ impl Core {
     ) -> PyResult<String> {
         let model = self.model.clone();
         watched(py, move |_| {
-            let found = SpectrumReport::compute(&setup(model, &set, resolution)?, k)?;
-            Ok(with_text(found.json(), &found))
+            let report = SpectrumReport::compute(&setup(model, &set, resolution)?, k)?;
+            Ok(with_text(report.json(), &report))
         })
     }
 
@@ -171,8 +183,8 @@ impl Core {
         let model = self.model.clone();
         watched(py, move |_| {
             let setup = setup(model, &set, resolution)?;
-            let found = PointReport::compute(&setup, k, selection(near), order)?;
-            Ok(with_text(found.json(), &found))
+            let report = PointReport::compute(&setup, k, selection(near), order)?;
+            Ok(with_text(report.json(), &report))
         })
     }
 
@@ -209,8 +221,8 @@ impl Core {
                 near: near.map(|(re, im)| C64::new(re, im)),
             });
             let choices: Vec<ModeChoice> = choices.collect();
-            let found = AmplitudesReport::compute(&setup, &choices, order, &Silent)?;
-            Ok(with_text(found.json(), &found))
+            let report = AmplitudesReport::compute(&setup, &choices, order, &Silent)?;
+            Ok(with_text(report.json(), &report))
         })
     }
 
@@ -244,31 +256,24 @@ impl Core {
                 },
             };
             let question = Question::new(&setup, &request)?;
-            let found = CriticalReport::compute(&setup, &question, watch)?;
-            let points = found.found.iter().map(|point| found.json(point));
+            let report = CriticalReport::compute(&setup, &question, watch)?;
+            let points = report.found.iter().map(|point| report.json(point));
             Ok(points.collect::<Value>().to_string())
         })
     }
 
     /// Rows over the product of axes, the first varying fastest; into a CSV file with a journal where `out` is given.
-    #[allow(clippy::too_many_arguments, reason = "the options of the command")]
     fn sweep(
         &self,
         py: Python<'_>,
-        set: Vec<String>,
-        resolution: usize,
-        axes: Vec<(String, Vec<f64>)>,
-        k: Option<f64>,
-        near: Near,
-        follow: bool,
-        columns: Vec<String>,
+        assignment: Assignment,
         out: Option<PathBuf>,
         force: bool,
     ) -> PyResult<String> {
         let model = self.model.clone();
         watched(py, move |watch| {
-            let setup = setup(model, &set, resolution)?;
-            let sweep = swept(&setup, axes, k, row_mode(near, follow), &columns)?;
+            let setup = assignment.setup(model)?;
+            let sweep = assignment.sweep(&setup)?;
             let rows = match out {
                 Some(path) => {
                     let overwrite = Overwrite::forced(force);
@@ -281,48 +286,34 @@ impl Core {
     }
 
     /// Refuses to replace a file that is no table of this sweep, before anything is computed.
-    #[allow(clippy::too_many_arguments, reason = "the options of the command")]
     fn check_table(
         &self,
         py: Python<'_>,
-        set: Vec<String>,
-        resolution: usize,
-        axes: Vec<(String, Vec<f64>)>,
-        k: Option<f64>,
-        near: Near,
-        follow: bool,
-        columns: Vec<String>,
+        assignment: Assignment,
         out: PathBuf,
         force: bool,
     ) -> PyResult<()> {
         let model = self.model.clone();
         watched(py, move |_| {
-            let setup = setup(model, &set, resolution)?;
-            let sweep = swept(&setup, axes, k, row_mode(near, follow), &columns)?;
-            table::check(&out, &sweep.identity(), Overwrite::forced(force)).map(|_| ())
+            let setup = assignment.setup(model)?;
+            let identity = assignment.sweep(&setup)?.identity();
+            table::check(&out, &identity, Overwrite::forced(force)).map(|_| ())
         })
     }
 
     /// One share of the same, into a file of its own.
-    #[allow(clippy::too_many_arguments, reason = "the options of the command")]
     fn sweep_share(
         &self,
         py: Python<'_>,
-        set: Vec<String>,
-        resolution: usize,
-        axes: Vec<(String, Vec<f64>)>,
-        k: Option<f64>,
-        near: Near,
-        follow: bool,
-        columns: Vec<String>,
+        assignment: Assignment,
         share: (usize, usize),
         out: PathBuf,
     ) -> PyResult<()> {
         let model = self.model.clone();
         watched(py, move |watch| {
-            let setup = setup(model, &set, resolution)?;
+            let setup = assignment.setup(model)?;
             let share = Share::parse(&format!("{}/{}", share.0, share.1))?;
-            let sweep = swept(&setup, axes, k, row_mode(near, follow), &columns)?;
+            let sweep = assignment.sweep(&setup)?;
             sweep.run_share(share, &out, Overwrite::Recognised, watch, |_| {})
         })
     }
@@ -387,8 +378,8 @@ impl Core {
                     converged.amplitude().map_err(missing)?.value
                 }
             };
-            let found = pattern(&converged.point, amplitude, window, &[])?;
-            let fields = found.fields.iter().map(|field| {
+            let plane = pattern(&converged.point, amplitude, window, &[])?;
+            let fields = plane.fields.iter().map(|field| {
                 let value = json!({
                     "base": field.base,
                     "linear": field.linear,
@@ -400,8 +391,8 @@ impl Core {
                 "parameters": base.parameters.json(base.structure()),
                 "k": k,
                 "amplitude": amplitude,
-                "x": found.x,
-                "y": found.y,
+                "x": plane.x,
+                "y": plane.y,
                 "fields": fields.collect::<Vec<_>>(),
             });
             Ok(object.to_string())

@@ -166,6 +166,10 @@ def test_errors_are_exceptions():
         model.critical("r", (0.5, 0.6), k=1.0)
     with pytest.raises(InputError, match="nothing varies"):
         model.sweep(k=1.0)
+    with pytest.raises(InputError, match="`r` is set twice, by set and by a keyword"):
+        model.point(k=1, set={"r": 0.1}, r=0.2)
+    with pytest.raises(InputError, match="`r` is set twice, by set and by a keyword"):
+        model.sweep(k=1, set={"r": 0.1}, r=[0.2, 0.3])
     with pytest.raises(InputError, match="odd numbers"):
         model.point(k=1, order=4)
 

@@ -177,8 +177,15 @@ impl fmt::Display for SpectrumReport {
                 "\n{left_out} of the first {SHOWN} are not converged at this M and left out"
             )?;
         }
-        if let Err(reason) = &self.adjoint {
-            write!(f, "\nL†: {reason}")?;
+        match &self.adjoint {
+            Err(reason) => write!(f, "\nthe columns of L† are empty: {reason}")?,
+            Ok(adjoint) if adjoint.values.len() < self.direct.values.len().min(SHOWN) => write!(
+                f,
+                "\nL† has {} eigenvalues and L has {}: the last rows have none of L†",
+                adjoint.values.len(),
+                self.direct.values.len()
+            )?,
+            Ok(_) => {}
         }
         Ok(())
     }

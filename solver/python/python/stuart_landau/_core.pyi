@@ -1,9 +1,22 @@
+from typing import TypedDict
+
 class InputError(ValueError): ...
 class ComputationError(RuntimeError): ...
 
 __version__: str
 
 Near = tuple[float, float] | None
+
+class Assignment(TypedDict):
+    """What is swept; the first axis varies fastest."""
+
+    set: list[str]
+    resolution: int
+    axes: list[tuple[str, list[float]]]
+    k: float | None
+    near: Near
+    follow: bool
+    columns: list[str]
 
 class Core:
     @staticmethod
@@ -39,42 +52,9 @@ class Core:
         near: Near,
         follow: bool,
     ) -> str: ...
-    def sweep(
-        self,
-        set: list[str],
-        resolution: int,
-        axes: list[tuple[str, list[float]]],
-        k: float | None,
-        near: Near,
-        follow: bool,
-        columns: list[str],
-        out: str | None,
-        force: bool,
-    ) -> str: ...
-    def check_table(
-        self,
-        set: list[str],
-        resolution: int,
-        axes: list[tuple[str, list[float]]],
-        k: float | None,
-        near: Near,
-        follow: bool,
-        columns: list[str],
-        out: str,
-        force: bool,
-    ) -> None: ...
-    def sweep_share(
-        self,
-        set: list[str],
-        resolution: int,
-        axes: list[tuple[str, list[float]]],
-        k: float | None,
-        near: Near,
-        follow: bool,
-        columns: list[str],
-        share: tuple[int, int],
-        out: str,
-    ) -> None: ...
+    def sweep(self, assignment: Assignment, out: str | None, force: bool) -> str: ...
+    def check_table(self, assignment: Assignment, out: str, force: bool) -> None: ...
+    def sweep_share(self, assignment: Assignment, share: tuple[int, int], out: str) -> None: ...
     @staticmethod
     def merge(shards: list[str], out: str, force: bool = False) -> None: ...
     def verify(self, set: list[str], resolution: int, k: float, near: Near, order: int) -> str: ...

@@ -11,13 +11,16 @@ import shutil
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ._core import Core
 
+if TYPE_CHECKING:
+    from ._core import Assignment
+
 
 def run(
-    client: Any, model: Any, assignment: tuple[Any, ...], out: Path, tasks: int, cpus: int, force: bool
+    client: Any, model: Any, assignment: Assignment, out: Path, tasks: int, cpus: int, force: bool
 ) -> None:
     """Submits the shares of a sweep, waits for them, and puts them together.
 
@@ -27,7 +30,7 @@ def run(
     from hyperqueue import Job
     from hyperqueue.task.task import ResourceRequest
 
-    model._core.check_table(*assignment, str(out), force)
+    model._core.check_table(assignment, str(out), force)
     folder = Path(tempfile.mkdtemp(prefix=f"{out.name}.cluster-", dir=out.parent))
     file = folder / "assignment"
     file.write_bytes(pickle.dumps((model, assignment)))
@@ -79,7 +82,7 @@ def main(arguments: list[str]) -> None:
     assignment, index, count, out = arguments
     # A pickle that `run` wrote.
     model, chosen = pickle.loads(Path(assignment).read_bytes())
-    model._core.sweep_share(*chosen, (int(index), int(count)), out)
+    model._core.sweep_share(chosen, (int(index), int(count)), out)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from .results import (
     Sweep,
 )
 
+if TYPE_CHECKING:
+    from ._core import Assignment
+
 Value = float | int | str
 
 
@@ -34,6 +37,14 @@ def built() -> list[str]:
 
 def _near(near: complex | None) -> tuple[float, float] | None:
     return None if near is None else (complex(near).real, complex(near).imag)
+
+
+def _merged(extra: Mapping[str, Any] | None, parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """The parameters of `set` and of the keywords; a name stands in one of the two."""
+    for name in parameters:
+        if extra and name in extra:
+            raise InputError(f"`{name}` is set twice, by set and by a keyword: a parameter accepts one value")
+    return {**(extra or {}), **parameters}
 
 
 def _is_axis(value: Any) -> bool:
@@ -212,7 +223,7 @@ class Model:
         `hyperqueue.Client`, the sweep runs there in `tasks` shares of `cpus` cores, through files beside `out`.
         `columns` are outputs at the equilibrium, and expressions in the base state: `"T at upper"`, `"integral(n)"`.
         """
-        every = {**(set or {}), **parameters}
+        every = _merged(set, parameters)
         axes = [(name, [float(x) for x in value]) for name, value in every.items() if _is_axis(value)]
         fixed = {name: value for name, value in every.items() if not _is_axis(value)}
         number = k
@@ -222,19 +233,23 @@ class Model:
         if not axes:
             raise InputError("nothing varies: give k or a parameter as a sequence")
         target = None if out is None else os.fspath(out)
+        assignment: Assignment = {
+            "set": self._set(None, fixed),
+            "resolution": M,
+            "axes": axes,
+            "k": number,
+            "near": _near(near),
+            "follow": follow,
+            "columns": list(columns),
+        }
         if cluster is not None:
             if target is None:
                 raise InputError("a sweep on a cluster needs out, a file that all workers see")
-            assignment = (self._set(None, fixed), M, axes, number, _near(near), follow, list(columns))
             path = Path(target).resolve()
             distributed.run(cluster, self, assignment, path, tasks, cpus, force)
             rows = distributed.rows(path, len(axes), list(columns))
         else:
-            rows = json.loads(
-                self._core.sweep(
-                    self._set(None, fixed), M, axes, number, _near(near), follow, list(columns), target, force
-                )
-            )
+            rows = json.loads(self._core.sweep(assignment, target, force))
         varying = [name for name, _ in axes]
         defaults = {name: info["default"] for name, info in self.parameters.items() if name not in varying}
         facts = {"parameters": {**defaults, **fixed}, "k": number}
@@ -277,7 +292,7 @@ class Model:
         def shown(value: Value) -> str:
             return value if isinstance(value, str) else repr(float(value))
 
-        return [f"{name}={shown(value)}" for name, value in {**(extra or {}), **parameters}.items()]
+        return [f"{name}={shown(value)}" for name, value in _merged(extra, parameters).items()]
 
     def _k(self, k: float | None) -> float:
         if k is not None:

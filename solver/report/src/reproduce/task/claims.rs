@@ -7,7 +7,7 @@ use super::super::workshop::Workshop;
 use super::each;
 use super::planes::crest;
 use super::points::critical_point;
-use super::rows::{Coefficients, rows};
+use super::rows::{amplitude, converged, rows};
 use crate::library::column as derived_column;
 use landau_solver::base::BaseState;
 use landau_solver::error::{Error, Result};
@@ -61,26 +61,16 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
     if statement.quantity == Quantity::Column {
         return column_value(&setup, k, statement);
     }
-    let point = Coefficients::at(&setup, k)?;
-    let amplitude_error = |a: f64| {
-        // A² = −a0/a2
-        let relative = point.error.c0 / point.c0.re.abs() + point.error.c2 / point.c2.re.abs();
-        0.5 * a * relative
-    };
-    match statement.quantity {
-        Quantity::A2 => Ok((point.c2.re, point.error.c2)),
-        Quantity::Amplitude => {
-            let a = point
-                .amplitude()
-                .ok_or_else(|| Error::computation("there is no equilibrium at cubic order"))?;
-            Ok((a, amplitude_error(a)))
-        }
-        Quantity::Place
-        | Quantity::A0
-        | Quantity::Column
-        | Quantity::LargestAmplitude
-        | Quantity::LargestGrowth => unreachable!("answered above"),
+    let answer = converged(&setup, k)?;
+    let (point, error) = (&answer.point, answer.error);
+    if statement.quantity == Quantity::A2 {
+        return Ok((point.c2.re, error.c2));
     }
+    let none = || Error::computation("there is no equilibrium at cubic order");
+    let amplitude = amplitude(&answer).ok_or_else(none)?;
+    // A² = −a0/a2
+    let relative = error.c0 / point.c0.re.abs() + error.c2 / point.c2.re.abs();
+    Ok((amplitude, 0.5 * amplitude * relative))
 }
 
 /// A derived column, and how far the base state at another degree puts it.

@@ -5,7 +5,7 @@ use super::super::study::{Asked, Axis, Case, Of, named};
 use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
-use super::rows::{Coefficients, rows};
+use super::rows::{amplitude, converged, rows};
 use super::{Named, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
@@ -164,11 +164,11 @@ fn landau_point(setup: &Setup, k: f64, columns: &[String]) -> Result<Vec<Answer>
     let none = || "no equilibrium at cubic order".to_owned();
     // The row answers for what the point leaves open: where c2 is not converged, a0 may be.
     let row = rows(setup, None, "k", vec![k], RowMode::Leading, columns)?.remove(0);
-    let mut answers: Vec<Answer> = match Coefficients::at(setup, k) {
-        Ok(point) => vec![
-            Ok((point.c0.re, Some(point.error.c0))),
-            Ok((point.c2.re, Some(point.error.c2))),
-            point.amplitude().map(|a| (a, None)).ok_or_else(none),
+    let mut answers: Vec<Answer> = match converged(setup, k) {
+        Ok(answer) => vec![
+            Ok((answer.point.c0.re, Some(answer.error.c0))),
+            Ok((answer.point.c2.re, Some(answer.error.c2))),
+            amplitude(&answer).map(|a| (a, None)).ok_or_else(none),
         ],
         Err(Error::Input(message)) => return Err(Error::Input(message)),
         Err(error) => {

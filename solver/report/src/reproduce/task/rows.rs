@@ -2,9 +2,8 @@
 
 use super::called;
 use crate::library::column;
-use landau_solver::error::{Error, Result};
-use landau_solver::model::C64;
-use landau_solver::study::accuracy::{Accuracy, accuracy, landau_error, stands};
+use landau_solver::error::Result;
+use landau_solver::study::accuracy::Converged;
 use landau_solver::study::row::Row;
 use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::{self, Setup, Silent};
@@ -22,43 +21,18 @@ pub(super) fn nothing_in(label: &str, rows: &[Row]) -> Option<String> {
     ))
 }
 
-/// c0 and c2 of the leading mode, with their errors.
-pub(super) struct Coefficients {
-    pub c0: C64,
-    pub c2: C64,
-    /// Absolute errors of both.
-    pub error: Accuracy,
+/// The Landau point of the leading mode of a case, converged.
+///
+/// # Errors
+/// See [`Converged::new`].
+pub(super) fn converged(setup: &Setup, k: f64) -> Result<Converged> {
+    Converged::new(setup, &setup.base(None)?, k, Selection::Leading)
 }
 
-impl Coefficients {
-    /// Those of a case at a wavenumber.
-    ///
-    /// # Errors
-    /// A mode that is not found, a coefficient that is not converged.
-    pub fn at(setup: &Setup, k: f64) -> Result<Self> {
-        let point = setup.point(&setup.base(None)?, k, Selection::Leading)?;
-        let error = accuracy(setup, &point)?;
-        let unconverged = |name: &str, error: f64, size: f64| {
-            let how_far = format!("its error is {error:.1e}, its size {size:.1e}");
-            Error::unresolved(name, setup.effective_resolution(), how_far)
-        };
-        let [size0, size2] = [point.c0, point.c2].map(|c| c.norm());
-        if !stands(error.c0, size0, point.pair.scale) {
-            return Err(unconverged("c0", error.c0, size0));
-        }
-        let c2 = landau_error(&point, error.c2);
-        let c2 = c2.ok_or_else(|| unconverged("c2", error.c2, size2))?;
-        Ok(Coefficients {
-            c0: point.c0,
-            c2: point.c2,
-            error: Accuracy { c2, ..error },
-        })
-    }
-
-    /// The equilibrium amplitude at cubic order.
-    pub fn amplitude(&self) -> Option<f64> {
-        equilibrium((self.c0, self.error.c0), (self.c2, self.error.c2))
-    }
+/// A_e at cubic order, where the errors leave both signs decided.
+pub(super) fn amplitude(of: &Converged) -> Option<f64> {
+    let Converged { point, error } = of;
+    equilibrium((point.c0, error.c0), (point.c2, error.c2))
 }
 
 /// Landau points of one case over an axis.
