@@ -186,6 +186,42 @@ amplitude { u = 1; }
     }
 }
 
+/// A wave grows where (r − r0)² < d, in an island that is narrower than the steps of the search. A steady mode grows
+/// from r = 2.
+#[test]
+fn a_narrow_island_before_the_onset() {
+    let spec = "model narrow_island \"An island of growing waves\";
+coordinates { x: periodic; }
+parameters { r = 0.1; d = 0.005; r0 = -0.5; k2 = 1.5; om = 1.5; }
+fields { u; a; b; }
+let w1 = u + dx(dx(u));
+let w2 = k2^2*a + dx(dx(a));
+let w3 = k2^2*b + dx(dx(b));
+let s = d - (r - r0)^2;
+balance {
+    eu: dt(u) = (r - 2)*u - w1 - dx(dx(w1)) - u^3 - u*(a^2 + b^2)/2;
+    ea: dt(a) = s*a - k2^2*w2/4 - dx(dx(w2))/4 - om*b - a*(a^2 + b^2) - a*u^2;
+    eb: dt(b) = s*b - k2^2*w3/4 - dx(dx(w3))/4 + om*a - b*(a^2 + b^2) - b*u^2;
+}
+base { u = 0; a = 0; b = 0; }
+amplitude { integral(|u|^2 + |a|^2 + |b|^2) = 1; }
+";
+    let path = written("narrow_island.model", spec);
+    let half_width = 0.005_f64.sqrt();
+    for (interval, value) in [
+        ("--from=-1.93 --to 1.1", -0.5 - half_width),
+        ("--from=-0.9 --to 0.3", -0.5 - half_width),
+        ("--from=1.1 --to=-1.93", -0.5 + half_width),
+        // The steady mode grows at the end of the interval, after the island.
+        ("--from=-2 --to 3.7", -0.5 - half_width),
+        ("--from=-0.4 --to 3.7", 2.0),
+    ] {
+        let answer = onset(&path, &format!("--vary r {interval} --minimize k=0.5:3"));
+        within(&answer, "value", value);
+        within(&answer, "k", if value < 0.0 { 1.5 } else { 1.0 });
+    }
+}
+
 /// Plane Poiseuille flow: the errors of onset and envelope hold where digits are lost, and so do those of the picture's
 /// neighbours in the answer. Truths: Orszag (1971) to the digits of a run with M = 100.
 #[test]

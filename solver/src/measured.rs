@@ -174,27 +174,22 @@ impl fmt::Display for Measured<C64> {
     }
 }
 
-/// The power of ten of the last digit to print of some numbers, and the error as it is printed: one digit, rounded up,
-/// the rounding of the numbers included where the error ends their digits.
+/// The power of ten of the last digit to print of some numbers, and the error as it is printed: one digit, rounded up.
+/// The printed error includes what the printed digits leave out.
 fn place(values: &[f64], error: f64, decimals: i32) -> (i32, f64) {
     if !(error.is_finite() && error > 0.0) {
         return (i32::MIN, error);
     }
-    let cut = |place: i32| {
-        let shown = |x: &f64| (shown(*x, place, error) - x).abs();
-        values.iter().map(shown).fold(0.0, f64::max)
-    };
     let size = values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+    let last = last_place(size, decimals);
+    let cut = |place: i32| {
+        let cut = |x: &f64| shown(*x, place.max(last), error) - x;
+        values.iter().map(cut).fold(0.0, f64::hypot)
+    };
     let mut place = exponent(error);
     loop {
-        let ends_digits = place >= last_place(size, decimals);
-        let whole = if ends_digits {
-            error + cut(place)
-        } else {
-            error
-        };
         let unit = 10_f64.powi(place);
-        let rounded = (whole / unit - 1e-9).ceil().max(1.0);
+        let rounded = ((error + cut(place)) / unit - 1e-9).ceil().max(1.0);
         if rounded < 10.0 {
             return (place, rounded * unit);
         }
@@ -284,32 +279,39 @@ mod tests {
         let wave = Measured::new(C64::new(0.003_739_7, -0.237_526_54), 2e-8);
         assert_eq!(wave.to_string(), "0.00373970 - 0.23752654 i ± 2e-8");
         let steady = Measured::new(C64::new(-3.0, 1e-13), 3e-12);
-        assert_eq!(steady.to_string(), "-3.0000000000 ± 3e-12");
+        assert_eq!(steady.to_string(), "-3.0000000000 ± 4e-12");
         let neutral = Measured::new(C64::new(1e-13, 2.5), 3e-12);
-        assert_eq!(neutral.to_string(), "0 + 2.5000000000 i ± 3e-12");
+        assert_eq!(neutral.to_string(), "0 + 2.5000000000 i ± 4e-12");
         assert_eq!(shown(-8e-13, 5e-12), "0 ± 6e-12");
         assert_eq!(shown(9.7e-5, 6e-6), "9.7e-5 ± 6e-6");
     }
 
-    /// What is printed lies within the printed error of every value that the bar admits, but for digits beyond the tenth decimal,
-    /// which are never printed.
+    /// Every value that the error admits lies within the printed error of the printed number, and the printed error is no
+    /// larger than the digits need.
     #[test]
     fn the_printed_bar_holds() {
         for i in 0..2000 {
             let value = 10_f64.powf(-6.0 + 0.007 * f64::from(i)) * 1.37;
-            let error = value * 10_f64.powf(-8.0 * f64::from(i * 7919 % 2000) / 2000.0);
+            let error = value * 10_f64.powf(-14.0 * f64::from(i * 7919 % 2000) / 2000.0);
             let text = shown(value, error);
             let (digits, bar) = text.split_once(" ± ").expect("a bar");
             let [digits, bar] = [digits, bar].map(|t| t.parse::<f64>().expect("a number"));
-            let unprinted = 0.51e-10 * value.abs().max(1.0);
+            let rounding = 2.0 * f64::EPSILON * value;
             assert!(
-                (digits - value).abs() + error <= bar * (1.0 + 1e-7) + unprinted,
+                (digits - value).abs() + error <= bar * (1.0 + 1e-7) + rounding,
                 "{text}: {value} {error}"
             );
-            // Where the digits end before the error does, the bar holds what they leave out.
-            let least = 1e-7 * value.abs();
+            // Half a unit of the tenth decimal at most is left out.
+            let least = 1e-10 * value.max(1.0);
             assert!(bar <= 3.0 * error.max(least), "{text}: {error}");
         }
+    }
+
+    #[test]
+    fn the_printed_bar_holds_what_the_tenth_decimal_leaves_out() {
+        assert_eq!(shown(0.001_193_220_118_24, 2e-11), "0.0011932201 ± 4e-11");
+        let number = Measured::new(C64::new(0.123_456_789_04, 0.123_456_789_03), 1e-13);
+        assert_eq!(number.to_string(), "0.1234567890 + 0.1234567890 i ± 6e-11");
     }
 
     #[test]

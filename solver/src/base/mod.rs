@@ -164,10 +164,7 @@ fn refine(
     for &degree in &degrees[first.min(degrees.len() - 1)..] {
         match collocated::solve(effort, parameters, previous.as_ref(), degree, space.clone()) {
             Ok(state) => {
-                let found = state.tail() < resolved;
-                if degree >= STRETCHED_FROM {
-                    space = state.widened();
-                }
+                let is_resolved = state.tail() < resolved;
                 // Rounding sets a floor to the tail; beyond it more polynomials do not help.
                 let stalled = best
                     .as_ref()
@@ -175,9 +172,12 @@ fn refine(
                 if stalled {
                     break;
                 }
+                if !is_resolved && degree >= STRETCHED_FROM {
+                    space = state.widened();
+                }
                 previous = Some(state.clone());
                 best = Some(state);
-                if found {
+                if is_resolved {
                     break;
                 }
             }

@@ -1,8 +1,12 @@
 //! Chebyshev points on [−1, 1], barycentric interpolation and differentiation, Clenshaw–Curtis
 //! quadrature (Trefethen, Spectral Methods in MATLAB; Berrut & Trefethen 2004).
 
+use crate::numerics::dense::vectorised;
 use faer::Mat;
 use std::f64::consts::PI;
+
+/// Points at which a series is evaluated at once.
+const LANES: usize = 16;
 
 /// A family of points; the number is the count of points.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -244,6 +248,24 @@ impl Series {
         let kept = self.derivatives.iter().take(order + 1);
         kept.map(|series| clenshaw(series, xi)).collect()
     }
+
+    /// The derivative of an order, at most that of [`Series::new`], at many points: what [`Series::values`] gives for
+    /// each of them, several at once.
+    pub fn sampled(&self, points: &[f64], order: usize) -> Vec<f64> {
+        let series = &self.derivatives[order];
+        let mut sampled = Vec::with_capacity(points.len());
+        vectorised(
+            #[inline(always)]
+            || {
+                for points in points.chunks(LANES) {
+                    let mut xi = [0.0; LANES];
+                    xi[..points.len()].copy_from_slice(points);
+                    sampled.extend_from_slice(&clenshaw_in_lanes(series, &xi)[..points.len()]);
+                }
+            },
+        );
+        sampled
+    }
 }
 
 fn clenshaw(series: &[f64], xi: f64) -> f64 {
@@ -252,6 +274,20 @@ fn clenshaw(series: &[f64], xi: f64) -> f64 {
         (b1, b2) = (2.0 * xi * b1 - b2 + c, b1);
     }
     xi * b1 - b2 + series.first().copied().unwrap_or(0.0)
+}
+
+/// [`clenshaw`] at several points, by the same operations.
+#[inline(always)]
+fn clenshaw_in_lanes(series: &[f64], xi: &[f64; LANES]) -> [f64; LANES] {
+    let (mut b1, mut b2) = ([0.0; LANES], [0.0; LANES]);
+    for &c in series.iter().skip(1).rev() {
+        for lane in 0..LANES {
+            let b = 2.0 * xi[lane] * b1[lane] - b2[lane] + c;
+            (b1[lane], b2[lane]) = (b, b1[lane]);
+        }
+    }
+    let first = series.first().copied().unwrap_or(0.0);
+    std::array::from_fn(|lane| xi[lane] * b1[lane] - b2[lane] + first)
 }
 
 /// Coefficients of the derivative.
@@ -311,6 +347,19 @@ mod tests {
                     }
                 }
             }
+        }
+    }
+
+    #[test]
+    fn many_points_are_as_one_by_one() {
+        let series = Series::new(vec![0.3, -1.2, 0.7, 0.1, -0.02], 2);
+        let points: Vec<f64> = (0..37).map(|i| f64::from(i) / 18.0 - 1.0).collect();
+        for order in 0..3 {
+            let one_by_one = points.iter().map(|&xi| series.values(xi, order)[order]);
+            assert_eq!(
+                series.sampled(&points, order),
+                one_by_one.collect::<Vec<_>>()
+            );
         }
     }
 

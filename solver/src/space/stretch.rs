@@ -67,13 +67,12 @@ impl Stretch {
         let places = (1..SAMPLES).map(|i| -1.0 + 2.0 * i as f64 / SAMPLES as f64);
         let places: Vec<f64> = places.collect();
         for series in profiles.filter(|s| s.coefficients().len() > 1) {
-            let values = places.iter().map(|&eta| series.values(eta, 0)[0]);
-            let (least, most) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
-                (a.min(v), b.max(v))
-            });
-            for &eta in &places {
+            let [values, slopes] = [0, 1].map(|order| series.sampled(&places, order));
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            for ((&eta, value), slope) in places.iter().zip(values).zip(slopes) {
                 let xi = self.xi(eta);
-                let slope = self.compose(xi, &series.values(eta, 1))[1].abs();
+                let slope = self.compose(xi, &[value, slope])[1].abs();
                 // Chebyshev points resolve a layer at an end by themselves.
                 let width = (most - least) / slope;
                 let seen = width / (1.0 - xi * xi + width).sqrt();

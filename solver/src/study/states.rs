@@ -83,6 +83,10 @@ impl States {
                 None => states.undecided += 1,
             }
         }
+        let is_open = states.decided.is_empty() && states.undecided == 0;
+        if is_open && neutral_within_errors(&settled, errors) {
+            states.undecided = 1;
+        }
         states
     }
 
@@ -195,6 +199,12 @@ impl fmt::Display for State {
             self.next_order
         )
     }
+}
+
+/// Whether the errors leave open if some mode grows or decays: then they leave open an equilibrium of small amplitude.
+fn neutral_within_errors(system: &AmplitudeSystem, errors: &[Vec<f64>]) -> bool {
+    let mut linear = system.equations.iter().zip(errors);
+    linear.any(|(terms, errors)| errors[0] > 0.0 && terms[0].g.re.abs() <= errors[0])
 }
 
 /// The system with nonlinear terms that are zero within their errors put to zero, and so the parts of others.

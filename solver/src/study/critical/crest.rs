@@ -1,6 +1,7 @@
 //! Crests of growth over k.
 
 use super::grid::Site;
+use super::summit::Growth;
 use crate::error::{Error, Result};
 use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
@@ -22,6 +23,16 @@ pub(super) struct Crest {
     pub site: Site,
     /// Whether it lies at an end of the range, where growth still rises outwards.
     pub at_end: bool,
+}
+
+impl Crest {
+    /// Its height.
+    pub fn growth(&self) -> Growth {
+        Growth {
+            x: self.x,
+            rate: self.pair.c.re,
+        }
+    }
 }
 
 /// The mode of largest growth rate among some wavenumbers.

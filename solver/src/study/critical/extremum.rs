@@ -2,31 +2,24 @@
 //! modes, passes through zero. There growth = 0 and dc0/dk = 0 (real parts), by Newton's method in k and the parameter.
 //! A root is an answer only if no mode grows at any k of the range there.
 
-use super::super::{Axis, Progress, Setup};
+use super::super::{Progress, Setup};
 use super::crest::{Crest, climb, highest};
-use super::grid::{Beside, Grid, Site};
+use super::first::{SCAN, WAVENUMBERS};
+use super::grid::{Beside, Grid};
 use super::newton::{Root, polish};
-use super::sampler::{NEUTRAL, unit, unit_of};
-use super::survey::{Sought, Survey, evenly};
+use super::sampler::{NEUTRAL, unit_of};
+use super::summit::{Growth, Summit};
 use super::{Critical, LEADS, Question, TOLERANCE, Tracking, UNRESOLVED, Wavenumber};
-use crate::base::BaseState;
 use crate::error::{Error, Result};
-use crate::model::C64;
 use crate::numerics::brent;
 use crate::spectrum;
 use crate::weakly::{self, Selection};
 
-/// Values of the parameter that are scanned.
-const SCAN: usize = 9;
-/// The same for a mode that is followed, and every so many of them are looked at for it.
+/// Values of the parameter that are scanned for a mode that is followed, and every so many of them are looked at for it.
 const FOLLOWED_SCAN: usize = 13;
 const STRIDE: usize = 6;
-/// Wavenumbers at which all modes are looked at for every value of the parameter.
-const WAVENUMBERS: usize = 13;
-/// The same at a root, to verify it.
+/// Wavenumbers at which all modes are looked at to verify a root.
 const FINE_WAVENUMBERS: usize = 20;
-/// A wider range of k, as a ratio, is looked at in geometric steps too.
-const WIDE: f64 = 6.0;
 /// Times that another mode may grow at what seemed an extremum.
 const MOST_CRESTS: usize = 60;
 
@@ -75,47 +68,11 @@ pub fn minimise(setup: &Setup, question: &Question, progress: &dyn Progress) -> 
     Ok(answer)
 }
 
-struct Search<'s> {
-    setup: &'s Setup,
-    question: &'s Question,
-    range: (f64, f64),
-}
-
-/// The mode that grows fastest at the wavenumbers that were looked at, for one value of the parameter.
-#[derive(Clone)]
-struct Summit {
-    x: f64,
-    k: f64,
-    c: C64,
-    /// The unit of rates there.
-    unit: f64,
-    site: Site,
-}
-
-/// What the largest growth rate does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Side {
-    Decays,
-    Neutral,
-    Grows,
-}
-
-impl Summit {
-    fn side(&self) -> Side {
-        let neutral = LEADS * self.unit;
-        match self.c.re {
-            growth if growth > neutral => Side::Grows,
-            growth if growth < -neutral => Side::Decays,
-            _ => Side::Neutral,
-        }
-    }
-}
-
-/// A value of the parameter and the growth rate there.
-#[derive(Clone, Copy)]
-struct Stable {
-    x: f64,
-    growth: f64,
+/// A search for an extremum.
+pub(super) struct Search<'s> {
+    pub(super) setup: &'s Setup,
+    pub(super) question: &'s Question,
+    pub(super) range: (f64, f64),
 }
 
 /// Where a crest of growth over k passes through zero.
@@ -136,115 +93,20 @@ impl Neutral {
 }
 
 impl Search<'_> {
-    fn axis(&self) -> Axis {
-        self.question.axis()
-    }
-
-    fn site(&self, x: f64, near: Option<&BaseState>) -> Result<Site> {
-        let moved = self.setup.moved(self.axis(), x)?;
-        let grid = Grid::of(self.setup);
-        grid.site(&moved, near).or_else(|error| match near {
-            Some(_) => grid.site(&moved, None),
-            None => Err(error),
-        })
-    }
-
-    /// Wavenumbers of the range, evenly spaced; in a wide one also in geometric steps.
-    fn wavenumbers(&self, count: usize) -> Vec<f64> {
-        let (low, high) = self.range;
-        let mut all = evenly(low, high, count);
-        if high > WIDE * low {
-            let steps = evenly(low.ln(), high.ln(), count);
-            all.extend(steps[1..count - 1].iter().map(|k| k.exp()));
-        }
-        all
-    }
-
-    /// Whether a mode grows somewhere in the range of k, and the one that grows fastest or decays most slowly.
-    fn summit(&self, x: f64, near: Option<&BaseState>, wavenumbers: &[f64]) -> Result<Summit> {
-        let site = self.site(x, near)?;
-        let spectra = |k: f64| {
-            let spectrum = spectrum::eigenvalues(&site.problem, k)?;
-            let unit = unit(&site.problem, k, spectrum.scale());
-            Ok((spectrum, unit))
-        };
-        let survey = Survey {
-            spectra: &spectra,
-            ends: self.range,
-            sought: Sought::Growth,
-        };
-        let nodes = survey.run(wavenumbers, &|| {})?;
-        let highest = nodes
-            .iter()
-            .max_by(|a, b| a.growth().total_cmp(&b.growth()));
-        let node =
-            highest.ok_or_else(|| Error::computation("no mode was found in the range of k"))?;
-        Ok(Summit {
-            x,
-            k: node.x,
-            c: node.leading(),
-            unit: node.scale,
-            site,
-        })
-    }
-
-    /// The extremum of the neutral curve of whatever mode leads.
-    fn leading(&self, progress: &dyn Progress) -> Result<Root> {
-        let wavenumbers = self.wavenumbers(WAVENUMBERS);
-        let mut places = self.question.places(SCAN);
-        let mut failure = None;
-        // From the stable end, so that the first change of sign is the onset.
-        let end = self.summit(places[SCAN - 1], None, &wavenumbers);
-        let begin = self.summit(places[0], None, &wavenumbers);
-        let ends = [&begin, &end].map(|end| end.as_ref().ok().map(|s| (s.x, s.c.re)));
-        let side = |end: &Result<Summit>| end.as_ref().map(Summit::side).ok();
-        let turned =
-            side(&begin) == Some(Side::Grows) && side(&end).is_some_and(|s| s < Side::Grows);
-        let [begin, end] = if turned { [end, begin] } else { [begin, end] };
-        if turned {
-            places.reverse();
-        }
-        let mut last: Option<Summit> = None;
-        let middle = &places[1..SCAN - 1];
-        let between = middle.iter().map(|&x| (x, None));
-        let all = std::iter::once((places[0], Some(begin)));
-        let all = all.chain(between).chain([(places[SCAN - 1], Some(end))]);
-        for (x, known) in all {
-            progress.advance(1);
-            let near = last.as_ref().map(|last| last.site.base.clone());
-            let look = || self.summit(x, near.as_deref(), &wavenumbers);
-            match known.unwrap_or_else(look) {
-                Ok(summit) => match last.replace(summit.clone()) {
-                    Some(last) if last.side() > summit.side() => return self.settle(&summit, last),
-                    Some(last) if last.side() < summit.side() => return self.settle(&last, summit),
-                    _ => {}
-                },
-                Err(error) => failure = Some(error),
-            }
-        }
-        match (failure, ends) {
-            (None, [Some(from), Some(to)]) => Err(self.no_change([from, to])),
-            (Some(error), _) => Err(error),
-            _ => Err(Error::computation("the interval is empty")),
-        }
-    }
-
-    fn no_change(&self, [(x, first), (y, last)]: [(f64, f64); 2]) -> Error {
+    pub(super) fn no_change(&self, [first, last]: [Growth; 2]) -> Error {
         let [from, to] = self.question.between();
         let (low, high) = self.range;
         Error::NoCriticalPoint(format!(
             "the largest growth rate over k in {low}..{high} does not change sign between {from} and {to}: \
-             {first:.4e} at {x:.6}, {last:.4e} at {y:.6}; try another interval"
+             {:.4e} at {:.6}, {:.4e} at {:.6}; try another interval",
+            first.rate, first.x, last.rate, last.x
         ))
     }
 
     /// The place between two values of the parameter at which the largest growth rate is zero: a growing crest is
     /// followed to where it is neutral, and so is the highest one that still grows there.
-    fn settle(&self, stable: &Summit, mut unstable: Summit) -> Result<Root> {
-        let mut stable = Stable {
-            x: stable.x,
-            growth: stable.c.re,
-        };
+    pub(super) fn settle(&self, stable: &Summit, mut unstable: Summit) -> Result<Root> {
+        let mut stable = stable.growth();
         let fine = self.wavenumbers(FINE_WAVENUMBERS);
         for _ in 0..MOST_CRESTS {
             let neutral = self
@@ -271,10 +133,7 @@ impl Search<'_> {
             if summit.c.re > 0.0 {
                 unstable = summit;
             } else {
-                stable = Stable {
-                    x,
-                    growth: summit.c.re,
-                };
+                stable = summit.growth();
             }
         }
         Err(Error::computation(format!(
@@ -309,10 +168,10 @@ impl Search<'_> {
 
     /// Where a growing crest is neutral, on the way to a value of the parameter at which all modes decay: by Newton's
     /// method, or by Brent's along the crest.
-    fn neutral(&self, stable: Stable, crest: &Crest) -> Result<Neutral> {
+    fn neutral(&self, stable: Growth, crest: &Crest) -> Result<Neutral> {
         let growth = crest.pair.c.re;
         if !crest.at_end {
-            let part = growth / (growth - stable.growth);
+            let part = growth / (growth - stable.rate);
             let x = crest.x + part * (stable.x - crest.x);
             let bracket = (stable.x, crest.x);
             if let Ok(root) = self.polished(x, crest, bracket) {
@@ -369,20 +228,16 @@ impl Search<'_> {
         crests.push(seed.clone());
         crests.extend(walk(&mut (start + 1..places.len())));
         let grows = |crest: &Crest| crest.pair.c.re > 0.0;
-        let ends = [&crests[0], &crests[crests.len() - 1]].map(|c| (c.x, c.pair.c.re));
+        let ends = [&crests[0], &crests[crests.len() - 1]].map(Crest::growth);
         if grows(&crests[0]) && !grows(&crests[crests.len() - 1]) {
             crests.reverse();
         }
-        let stable = |crest: &Crest| Stable {
-            x: crest.x,
-            growth: crest.pair.c.re,
-        };
         let neutral = match crests
             .windows(2)
             .find(|pair| grows(&pair[0]) != grows(&pair[1]))
         {
-            Some([a, b]) if grows(a) => self.neutral(stable(b), a),
-            Some([a, b]) => self.neutral(stable(a), b),
+            Some([a, b]) if grows(a) => self.neutral(b.growth(), a),
+            Some([a, b]) => self.neutral(a.growth(), b),
             _ => Err(self.no_change(ends)),
         };
         self.inside(neutral?)

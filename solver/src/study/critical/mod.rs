@@ -3,12 +3,14 @@
 
 mod crest;
 mod extremum;
+mod first;
 mod grid;
 mod newton;
 mod question;
 mod report;
 mod sampler;
 mod scan;
+mod summit;
 mod survey;
 
 pub(super) use extremum::RootOn;
