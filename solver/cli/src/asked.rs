@@ -14,13 +14,13 @@ use landau_solver::weakly::Selection;
 pub fn asked(setup: &Setup, k: Option<f64>, common: &Common) -> Result<(f64, Selection<'static>)> {
     let structure = setup.model.structure();
     let typical = structure.typical.as_ref();
-    let own = |near: &[f64]| match near {
+    let target = |near: &[f64]| match near {
         [re, im] => Some(C64::new(*re, *im)),
         _ => None,
     };
     let (k, near) = match (k, typical) {
         (Some(k), _) => (k, common.near),
-        (None, Some(typical)) => (typical.k, common.near.or(own(&typical.near))),
+        (None, Some(typical)) => (typical.k, common.near.or(target(&typical.near))),
         (None, None) => {
             return Err(Error::input(format!(
                 "give the wavenumber with --k: the model `{}` names no typical one",
@@ -32,17 +32,17 @@ pub fn asked(setup: &Setup, k: Option<f64>, common: &Common) -> Result<(f64, Sel
 }
 
 /// Says what an earlier run has left.
-pub fn resumed(found: Resumed) {
-    if found.taken > 0 {
+pub fn resumed(rows: Resumed) {
+    if rows.taken > 0 {
         note!(
             "resumed: {} rows are taken from an interrupted run",
-            found.taken
+            rows.taken
         );
     }
-    if found.damaged > 0 {
+    if rows.damaged > 0 {
         note!(
             "note: {} lines of its journal do not fit and are computed again",
-            found.damaged
+            rows.damaged
         );
     }
 }

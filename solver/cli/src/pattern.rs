@@ -38,18 +38,18 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
         })?,
     };
     let expressions = shaded(setup, options)?;
-    let found = expand(&converged.point, amplitude.value, window, &expressions)?;
+    let plane = expand(&converged.point, amplitude.value, window, &expressions)?;
     let vector = options.arrows.as_deref().map(components).transpose()?;
     let parameters = state.parameters.json(state.structure());
     let attributes = attributes(setup, &parameters, Some(k), Some(amplitude.value));
     for name in vector.iter().flatten() {
-        named(&found, name)?;
+        named(&plane, name)?;
     }
     for path in &options.out {
         if is_picture(path) {
-            picture(setup, options, k, &found)?.write(path)?;
+            picture(setup, options, k, &plane)?.write(path)?;
         } else {
-            dataset(setup, &found, attributes.clone(), vector).write(path)?;
+            dataset(setup, &plane, attributes.clone(), vector).write(path)?;
         }
     }
     if common.json {
@@ -106,9 +106,9 @@ fn window(options: &PatternOptions) -> Result<Window> {
 }
 
 /// A quantity of the pattern by its name.
-fn named<'p>(found: &'p Pattern, name: &str) -> Result<&'p PlaneField> {
-    found.quantity(name.trim()).ok_or_else(|| {
-        let names: Vec<&str> = found.fields.iter().map(|f| f.name.as_str()).collect();
+fn named<'p>(plane: &'p Pattern, name: &str) -> Result<&'p PlaneField> {
+    plane.quantity(name.trim()).ok_or_else(|| {
+        let names: Vec<&str> = plane.fields.iter().map(|f| f.name.as_str()).collect();
         Error::input(format!(
             "there is no field `{name}`: the profiles are {}",
             names.join(", ")
@@ -132,8 +132,8 @@ fn shaded(setup: &Setup, options: &PatternOptions) -> Result<Vec<Expression>> {
     wanted.map(|text| expression(model, text)).collect()
 }
 
-fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> Result<Drawing> {
-    let field = |name: &str| named(found, name);
+fn picture(setup: &Setup, options: &PatternOptions, k: f64, plane: &Pattern) -> Result<Drawing> {
+    let field = |name: &str| named(plane, name);
     let part = match options.perturbation {
         true => Part::Perturbation,
         false => Part::Total,
@@ -142,13 +142,13 @@ fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> 
     let mut facts = vec![structure.title.clone()];
     facts.extend(setup.parameters.changed(structure));
     facts.push(format!("k = {}", words::short(k)));
-    facts.push(format!("A = {:.4}", found.amplitude));
+    facts.push(format!("A = {:.4}", plane.amplitude));
     let title = facts.join(", ");
-    if found.y.len() < 2 {
-        let drawn = pattern_lines(structure, found, &title, part);
+    if plane.y.len() < 2 {
+        let drawn = pattern_lines(structure, plane, &title, part);
         return drawn.ok_or_else(|| Error::computation("the pattern has no finite value"));
     }
-    let first = &found.fields[FieldId(0)];
+    let first = &plane.fields[FieldId(0)];
     let shade = options.shade.as_deref().map_or(Ok(first), field)?;
     let arrows = match &options.arrows {
         Some(text) => {
@@ -164,5 +164,5 @@ fn picture(setup: &Setup, options: &PatternOptions, k: f64, found: &Pattern) -> 
         arrows,
         written: &str::to_owned,
     };
-    Ok(pattern_pair(structure, found, &view))
+    Ok(pattern_pair(structure, plane, &view))
 }

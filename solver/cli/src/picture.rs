@@ -67,11 +67,13 @@ pub fn modes(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -> R
         return Ok(());
     }
     let (k, selection) = asked(setup, k, common)?;
-    let found = Modes::compute(setup, k, selection)?;
+    let profiles = Modes::compute(setup, k, selection)?;
     let structure = setup.model.structure();
-    drawn(files.plot.as_deref(), || figure::modes(structure, &found))?;
-    stored(setup, &found.parameters, Some(k), &files.out, |facts| {
-        dataset(setup, &found, facts)
+    drawn(files.plot.as_deref(), || {
+        figure::modes(structure, &profiles)
+    })?;
+    stored(setup, &profiles.parameters, Some(k), &files.out, |facts| {
+        dataset(setup, &profiles, facts)
     })
 }
 
@@ -104,10 +106,8 @@ pub fn sweep(setup: &Setup, sweep: &Sweep, rows: &[Row]) -> Option<Drawing> {
     let mut landau = Panel::new("first Landau coefficient", axis, "a2");
     let mut amplitude = Panel::new("equilibrium amplitude", axis, "A_e");
     for line in rows.chunk_by(|a, b| a.coordinates[1..] == b.coordinates[1..]) {
-        let others = sweep.ranges()[1..].iter().zip(&line[0].coordinates[1..]);
-        let label: Vec<String> = others
-            .map(|(r, x)| format!("{} = {x:.4}", r.name))
-            .collect();
+        let fixed = sweep.ranges()[1..].iter().zip(&line[0].coordinates[1..]);
+        let label: Vec<String> = fixed.map(|(r, x)| format!("{} = {x:.4}", r.name)).collect();
         let label = label.join(", ");
         growth.curve(&label, Style::Line, column(line, Column::A0));
         landau.curve_with_poles(&label, Style::Line, column(line, Column::A2));

@@ -5,11 +5,11 @@ use crate::inspect;
 use crate::interrupt::{self, Kept};
 use crate::progress::Bar;
 use landau_report::library::Library;
-use landau_report::reproduce::{Errata, Provenance, Study, Verdict, Workshop};
+use landau_report::reproduce::{Errata, Outcome, Provenance, Study, Verdict, Workshop};
 use landau_solver::error::{Error, Result};
 use landau_solver::file::Overwrite;
 use landau_solver::study::shard::Share;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -33,84 +33,96 @@ pub fn reproduce(
     let formulas = inspect::formulas(shop.model()?.as_ref(), errata.as_ref())?;
     interrupt::keeping(Kept::Tasks(shop.kept().to_owned()));
     if let Some(text) = shard {
-        let share = share(text)?;
-        let count = shop.run_share(share, &Bar::new("reproducing"))?;
-        let (Share { index, count: of }, kept) = (share, shop.kept().display());
-        match json {
-            true => say!(
-                "{}",
-                json!({"share": [index, of], "tasks": count, "kept": kept.to_string()})
-            ),
-            false => say!(
-                "share {index} of {of}: {count} tasks kept in {kept}; when all shares are there, the same command without --shard writes the report"
-            ),
-        }
-        return Ok(());
+        return run_share(&shop, share(text)?, json);
     }
-    let found = shop.run(&formulas, &Bar::new("reproducing"))?;
+    let outcome = shop.run(&formulas, &Bar::new("reproducing"))?;
     let page = out.join("index.html");
-    let count = |verdict: Verdict| found.claims.iter().filter(|c| c.verdict == verdict).count();
     if json {
-        let object = json!({
-            "study": path.display().to_string(),
-            "report": page.display().to_string(),
-            "figures": study.figure.len(),
-            "numbers": found.numbers.len(),
-            "claims": found.claims.len(),
-            "claims_contradicted": count(Verdict::Contradicted),
-            "claims_not_met": count(Verdict::NotMet),
-            "failures": found.failures,
-        });
-        say!("{object}");
+        say!("{}", counts(&path, &page, &study, &outcome));
     } else {
-        say!(
-            "{:<8} {:<52} {:>14} {:>12}",
-            "figure",
-            "quantity",
-            "ours",
-            "printed"
-        );
-        for number in found.numbers.iter().filter(|n| n.printed.is_some()) {
-            let ours = number.ours.map_or("-".to_owned(), |v| format!("{v:.6}"));
-            say!(
-                "{:<8} {:<52} {ours:>14} {:>12}",
-                number.figure,
-                number.quantity,
-                number.printed_as.as_deref().unwrap_or("")
-            );
-        }
-        let mut against: Vec<_> = found
-            .claims
-            .iter()
-            .filter(|c| c.verdict.is_against())
-            .collect();
-        against.sort_by_key(|claim| claim.verdict);
-        for claim in against {
-            say!(
-                "figure {}: {}: {}",
-                claim.figure,
-                claim.verdict_in_words(),
-                claim.says
-            );
-        }
-        say!(
-            "{} figures, {} numbers, {} statements: {}",
-            study.figure.len(),
-            found.numbers.len(),
-            found.claims.len(),
-            page.display()
-        );
+        print(&page, &study, &outcome);
     }
-    match found.failures.as_slice() {
+    match outcome.failures.as_slice() {
         [] => Ok(()),
-        [first, rest @ ..] => Err(Error::computation(format!(
+        [first, further @ ..] => Err(Error::computation(format!(
             "the report is written, but {first}{}",
-            match rest.len() {
+            match further.len() {
                 0 => String::new(),
                 more => format!("; and {more} more that did not come out, named there"),
             }
         ))),
     }
+}
+
+/// Computes one share of the tasks.
+fn run_share(shop: &Workshop, share: Share, json: bool) -> Result<()> {
+    let count = shop.run_share(share, &Bar::new("reproducing"))?;
+    let (Share { index, count: of }, kept) = (share, shop.kept().display());
+    if json {
+        let object = json!({"share": [index, of], "tasks": count, "kept": kept.to_string()});
+        say!("{object}");
+    } else {
+        say!(
+            "share {index} of {of}: {count} tasks kept in {kept}; when all shares are there, the same command without --shard writes the report"
+        );
+    }
+    Ok(())
+}
+
+/// The JSON object that is printed.
+fn counts(path: &Path, page: &Path, study: &Study, outcome: &Outcome) -> Value {
+    let count = |verdict: Verdict| {
+        let claims = outcome.claims.iter();
+        claims.filter(|claim| claim.verdict == verdict).count()
+    };
+    json!({
+        "study": path.display().to_string(),
+        "report": page.display().to_string(),
+        "figures": study.figure.len(),
+        "numbers": outcome.numbers.len(),
+        "claims": outcome.claims.len(),
+        "claims_contradicted": count(Verdict::Contradicted),
+        "claims_not_met": count(Verdict::NotMet),
+        "failures": outcome.failures,
+    })
+}
+
+/// Printed numbers beside ours, statements that do not hold, and how much there is.
+fn print(page: &Path, study: &Study, outcome: &Outcome) {
+    say!(
+        "{:<8} {:<52} {:>14} {:>12}",
+        "figure",
+        "quantity",
+        "ours",
+        "printed"
+    );
+    for number in outcome.numbers.iter().filter(|n| n.printed.is_some()) {
+        let ours = number.ours.map_or("-".to_owned(), |v| format!("{v:.6}"));
+        say!(
+            "{:<8} {:<52} {ours:>14} {:>12}",
+            number.figure,
+            number.quantity,
+            number.printed_as.as_deref().unwrap_or("")
+        );
+    }
+    let claims = outcome.claims.iter();
+    let mut against: Vec<_> = claims.filter(|c| c.verdict.is_against()).collect();
+    against.sort_by_key(|claim| claim.verdict);
+    for claim in against {
+        say!(
+            "figure {}: {}: {}",
+            claim.figure,
+            claim.verdict_in_words(),
+            claim.says
+        );
+    }
+    say!(
+        "{} figures, {} numbers, {} statements: {}",
+        study.figure.len(),
+        outcome.numbers.len(),
+        outcome.claims.len(),
+        page.display()
+    );
 }
 
 /// The command, the time and the commit.
@@ -142,23 +154,23 @@ fn only_study() -> Result<PathBuf> {
             .into_iter()
             .map(|p| p.join("studies")),
     );
-    let mut found: Vec<PathBuf> = folders.iter().flat_map(|folder| entries(folder)).collect();
-    found.retain(|path| path.extension().is_some_and(|e| e == "toml"));
+    let mut studies: Vec<PathBuf> = folders.iter().flat_map(|folder| entries(folder)).collect();
+    studies.retain(|path| path.extension().is_some_and(|e| e == "toml"));
     // Where there are several, one may say that it is the one.
-    if found.len() > 1 {
+    if studies.len() > 1 {
         let default = |path: &PathBuf| Study::read(path).is_ok_and(|study| study.default);
-        let chosen: Vec<PathBuf> = found.iter().filter(|p| default(p)).cloned().collect();
+        let chosen: Vec<PathBuf> = studies.iter().filter(|p| default(p)).cloned().collect();
         if chosen.len() == 1 {
-            found = chosen;
+            studies = chosen;
         }
     }
-    match found.len() {
-        1 => Ok(found.swap_remove(0)),
+    match studies.len() {
+        1 => Ok(studies.swap_remove(0)),
         0 => Err(Error::input(
             "no study file was found in a folder `studies` here: name one",
         )),
         _ => {
-            let names: Vec<String> = found.iter().map(|p| p.display().to_string()).collect();
+            let names: Vec<String> = studies.iter().map(|p| p.display().to_string()).collect();
             Err(Error::input(format!(
                 "name one of the study files {}",
                 names.join(", ")

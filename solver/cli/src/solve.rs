@@ -15,6 +15,7 @@ use landau_solver::study::amplitudes::{AmplitudesReport, ModeChoice};
 use landau_solver::study::critical::{CriticalReport, Quantity, Question, Request, Tracking};
 use landau_solver::study::point::PointReport;
 use landau_solver::study::profiles::BaseReport;
+use landau_solver::study::row::Row;
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::verify::Certificate;
@@ -24,19 +25,19 @@ use serde_json::json;
 
 pub fn base(setup: &Setup, points: usize, files: &Files, common: &Common) -> Result<()> {
     picture::check(files)?;
-    let found = BaseReport::compute(setup, points)?;
+    let report = BaseReport::compute(setup, points)?;
     if let Some(plot) = &files.plot {
         let fine = BaseReport::compute(setup, figure::POINTS)?;
         picture::drawn(Some(plot), || figure::base(&fine))?;
     }
     let structure = setup.model.structure();
-    picture::stored(setup, &found.parameters, None, &files.out, |facts| {
-        lines::base(structure, &found, facts)
+    picture::stored(setup, &report.parameters, None, &files.out, |facts| {
+        lines::base(structure, &report, facts)
     })?;
     if common.json {
-        say!("{}", found.json());
+        say!("{}", report.json());
     } else {
-        say!("{found}");
+        say!("{report}");
     }
     Ok(())
 }
@@ -44,26 +45,26 @@ pub fn base(setup: &Setup, points: usize, files: &Files, common: &Common) -> Res
 pub fn spectrum(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -> Result<()> {
     picture::check(files)?;
     let (k, _) = asked(setup, k, common)?;
-    let found = SpectrumReport::compute(setup, k)?;
-    picture::drawn(files.plot.as_deref(), || figure::spectrum(&found))?;
-    picture::stored(setup, &found.parameters, Some(k), &files.out, |facts| {
-        lines::spectrum(&found, facts)
+    let report = SpectrumReport::compute(setup, k)?;
+    picture::drawn(files.plot.as_deref(), || figure::spectrum(&report))?;
+    picture::stored(setup, &report.parameters, Some(k), &files.out, |facts| {
+        lines::spectrum(&report, facts)
     })?;
     if common.json {
-        say!("{}", found.json());
+        say!("{}", report.json());
     } else {
-        say!("{found}");
+        say!("{report}");
     }
     Ok(())
 }
 
 pub fn point(setup: &Setup, k: Option<f64>, order: usize, common: &Common) -> Result<()> {
     let (k, selection) = asked(setup, k, common)?;
-    let found = PointReport::compute(setup, k, selection, order)?;
+    let report = PointReport::compute(setup, k, selection, order)?;
     if common.json {
-        say!("{}", found.json());
+        say!("{}", report.json());
     } else {
-        say!("{found}");
+        say!("{report}");
     }
     Ok(())
 }
@@ -74,11 +75,11 @@ pub fn amplitudes(
     order: usize,
     common: &Common,
 ) -> Result<()> {
-    let found = AmplitudesReport::compute(setup, modes, order, &Bar::new("expanding"))?;
+    let report = AmplitudesReport::compute(setup, modes, order, &Bar::new("expanding"))?;
     if common.json {
-        say!("{}", found.json());
+        say!("{}", report.json());
     } else {
-        say!("{found}");
+        say!("{report}");
     }
     Ok(())
 }
@@ -111,10 +112,10 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
     };
     let question = Question::new(setup, &request)?;
     let bar = Bar::new("scanning");
-    let found = CriticalReport::compute(setup, &question, &bar)?;
-    let (first, others) = (&found.found[0], &found.found[1..]);
+    let report = CriticalReport::compute(setup, &question, &bar)?;
+    let (first, further) = (&report.found[0], &report.found[1..]);
     if let Some(plot) = &options.plot {
-        let curve = found.curve(setup, &question, &bar)?;
+        let curve = report.curve(setup, &question, &bar)?;
         let symbol = request.of.symbol();
         picture::drawn(Some(plot), || match request.minimize {
             None => {
@@ -127,19 +128,19 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
             }
         })?;
     }
-    if !others.is_empty() {
-        let others = others.iter();
-        let others = others.map(|c| Measured::new(c.value, c.error).to_string());
-        let others: Vec<String> = others.collect();
+    if !further.is_empty() {
+        let values = further.iter();
+        let values = values.map(|c| Measured::new(c.value, c.error).to_string());
+        let values: Vec<String> = values.collect();
         note!(
             "note: further points in the interval: {}",
-            others.join(", ")
+            values.join(", ")
         );
     }
     if common.json {
-        say!("{}", found.json(first));
+        say!("{}", report.json(first));
     } else {
-        say!("{found}");
+        say!("{report}");
     }
     Ok(())
 }
@@ -214,6 +215,14 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
     {
         drawn.write(path)?;
     }
+    summary(&sweep, &rows, options, common)
+}
+
+/// What a sweep found, in numbers of rows.
+///
+/// # Errors
+/// No row with a number.
+fn summary(sweep: &Sweep, rows: &[Row], options: &SweepOptions, common: &Common) -> Result<()> {
     let good = rows.iter().filter(|r| r.status == "ok").count();
     let numbered = rows.iter().filter(|r| r.c0.is_some()).count();
     let unstable = rows
@@ -226,7 +235,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
             json!({"out": options.out.display().to_string(), "rows": rows.len(), "ok": good, "numbered": numbered, "unstable": unstable})
         );
     } else {
-        picture::table(&sweep, &rows);
+        picture::table(sweep, rows);
         say!(
             "{} rows, {numbered} with a number, {good} ok, {unstable} unstable: {}",
             rows.len(),

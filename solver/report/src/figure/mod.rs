@@ -77,16 +77,16 @@ fn numbered_anew(svg: &str) -> String {
     const NAME: &str = "kuva-clip-";
     let mut parts = svg.split(NAME);
     let mut text = parts.next().unwrap_or_default().to_owned();
-    let mut known: Vec<&str> = Vec::new();
+    let mut numbers: Vec<&str> = Vec::new();
     for part in parts {
         let digits = part.len() - part.trim_start_matches(|c: char| c.is_ascii_digit()).len();
-        let (number, rest) = part.split_at(digits);
-        let position = known.iter().position(|other| *other == number);
+        let (number, after) = part.split_at(digits);
+        let position = numbers.iter().position(|earlier| *earlier == number);
         let position = position.unwrap_or_else(|| {
-            known.push(number);
-            known.len() - 1
+            numbers.push(number);
+            numbers.len() - 1
         });
-        text += &format!("clip-{position}{rest}");
+        text += &format!("clip-{position}{after}");
     }
     text
 }

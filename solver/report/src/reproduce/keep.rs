@@ -84,12 +84,13 @@ impl Workshop<'_> {
             value.map_err(|e| Error::computation(e.to_string()))
         };
         let mut parts = vec![stem.to_owned(), text(serde_json::to_string(task))?];
-        for case in task.cases() {
+        for case in task.kind().cases() {
             let setup = self.setup(case)?;
             parts.push(format!("{} {}", setup.resolution, setup.hash()));
         }
-        for reference in task.references() {
-            parts.push(hash_of(self.study.read_beside(reference)?.as_bytes()));
+        for reference in task.kind().references() {
+            let text = self.study.read_beside(&reference.file)?;
+            parts.push(hash_of(text.as_bytes()));
         }
         parts.push(text(serde_json::to_string(&self.study.symbol))?);
         parts.push(landau_solver::BUILD.to_owned());

@@ -10,6 +10,7 @@ mod feasible;
 mod files;
 mod keep;
 mod ledger;
+mod needs;
 mod outcome;
 mod page;
 mod run;

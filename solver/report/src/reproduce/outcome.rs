@@ -53,12 +53,12 @@ pub struct Beside {
 
 impl Number {
     /// Whether both are one number: a point marked in one picture and asked for beside another.
-    fn is(&self, other: &Number) -> bool {
-        let free = self.decides.is_none() && other.decides.is_none();
-        let same = self.figure == other.figure && self.quantity == other.quantity;
+    fn is(&self, number: &Number) -> bool {
+        let free = self.decides.is_none() && number.decides.is_none();
+        let same = self.figure == number.figure && self.quantity == number.quantity;
         free && same
-            && self.ours == other.ours
-            && (self.printed.is_none() || other.printed.is_none())
+            && self.ours == number.ours
+            && (self.printed.is_none() || number.printed.is_none())
     }
 
     /// A number of a case, by the name under which the source may print it.
@@ -149,26 +149,26 @@ impl Outcome {
         self.pictures.iter().flat_map(|picture| &picture.files)
     }
 
-    /// Adds everything of another.
-    pub fn add(&mut self, other: Outcome) {
-        self.pictures.extend(other.pictures);
-        for number in other.numbers {
-            match self.numbers.iter_mut().find(|known| known.is(&number)) {
+    /// Adds everything of another outcome.
+    pub fn add(&mut self, outcome: Outcome) {
+        self.pictures.extend(outcome.pictures);
+        for number in outcome.numbers {
+            match self.numbers.iter_mut().find(|earlier| earlier.is(&number)) {
                 // With what is printed, if either has it.
-                Some(known) if known.printed.is_none() => *known = number,
+                Some(earlier) if earlier.printed.is_none() => *earlier = number,
                 Some(_) => {}
                 None => self.numbers.push(number),
             }
         }
-        self.claims.extend(other.claims);
-        self.failures.extend(other.failures);
+        self.claims.extend(outcome.claims);
+        self.failures.extend(outcome.failures);
     }
 
     /// Why what is labelled so did not come out.
     pub fn reason(&self, label: &str) -> String {
         let start = format!("{}: ", called(label));
-        let found = self.failures.iter().find_map(|f| f.strip_prefix(&start));
-        found.unwrap_or("did not come out").to_owned()
+        let reason = self.failures.iter().find_map(|f| f.strip_prefix(&start));
+        reason.unwrap_or("did not come out").to_owned()
     }
 
     /// A printed number is answered by a number of its own case and name, or named as missed.

@@ -3,7 +3,7 @@
 use super::outcome::Outcome;
 use super::page::{self, Formulas};
 use super::study::{Figure, Task};
-use super::task;
+use super::task::{self, Place};
 use super::workshop::Workshop;
 use landau_solver::error::{Error, Result};
 use landau_solver::study::Progress;
@@ -61,8 +61,8 @@ impl Workshop<'_> {
     fn tasks(&self) -> Vec<Unit<'_>> {
         let sections = self.study.figure.iter().enumerate();
         let tasks = sections.flat_map(|(section, figure)| {
-            let own = figure.task.iter().enumerate();
-            own.map(move |(index, task)| Unit {
+            let tasks = figure.task.iter().enumerate();
+            tasks.map(move |(index, task)| Unit {
                 section,
                 figure,
                 index,
@@ -88,7 +88,7 @@ impl Workshop<'_> {
                 "figure {}, task {} ({}): {:.1} s",
                 unit.figure.id,
                 unit.index + 1,
-                unit.task.kind(),
+                unit.task.kind().name(),
                 started.elapsed().as_secs_f64()
             ));
             progress.advance(1);
@@ -111,7 +111,11 @@ impl Workshop<'_> {
         if let Some(outcome) = self.kept_task(&stem, &made_from) {
             return Ok(outcome);
         }
-        let outcome = task::run(self, figure, &stem, unit.task)?;
+        let place = Place {
+            figure,
+            stem: &stem,
+        };
+        let outcome = task::run(self, &place, unit.task)?;
         if let Some(reason) = self.unreadable(&stem) {
             progress.done(&format!(
                 "note: {reason}; its task is computed again, and the file stays as it is"

@@ -1,6 +1,5 @@
 //! Everything that a study was made from, as the report delivers it.
 
-use super::study::Task;
 use super::workshop::Workshop;
 use landau_solver::error::Result;
 use std::path::Path;
@@ -29,9 +28,9 @@ impl Delivered {
                 format!("-{number}")
             };
             let name = format!("{folder}{stem}{apart}{extension}");
-            match self.0.iter().find(|(known, _)| *known == name) {
+            match self.0.iter().find(|(delivered, _)| *delivered == name) {
                 None => return self.0.push((name, text)),
-                Some((_, known)) if *known == text => return,
+                Some((_, delivered)) if *delivered == text => return,
                 Some(_) => {}
             }
         }
@@ -65,10 +64,14 @@ impl Workshop<'_> {
             files.add(&format!("{ERRATA}/"), Path::new(errata), text);
         }
         let tasks = || study.figure.iter().flat_map(|figure| &figure.task);
-        for reference in tasks().flat_map(Task::references) {
-            files.add("", Path::new(reference), study.read_beside(reference)?);
+        for reference in tasks().flat_map(|task| task.kind().references()) {
+            let (path, text) = (
+                Path::new(&reference.file),
+                study.read_beside(&reference.file)?,
+            );
+            files.add("", path, text);
         }
-        let names = tasks().flat_map(Task::cases);
+        let names = tasks().flat_map(|task| task.kind().cases());
         let names = names.filter_map(|case| case.model.as_ref());
         for name in [&study.model].into_iter().chain(names) {
             for (path, text) in self.model_named(name)?.sources() {

@@ -121,8 +121,8 @@ fn statements(shop: &Workshop, outcomes: &[Outcome]) -> Markup {
     html! {
         section id="statements" {
             h2 { "What the source says in words" a.back href="#top" { "contents" } }
-            p { "Words in quotation marks are the source’s, from the section that is named. The criterion by which they are decided "
-                "is ours. A statement is contradicted where the source itself sets the bound, a number, a sign or a trend; where "
+            p { @if all.iter().any(|(_, claim)| claim.quoted) { "Words in quotation marks are the source’s, from the section that is named. " }
+                "The criterion by which a statement is decided is ours. A statement is contradicted where the source itself sets the bound, a number, a sign or a trend; where "
                 "the bound is ours, it is not met." }
             div.scroll { table {
                 thead { tr { th { "statement" } th { "criterion" } th { } th { "decided in" } } }
@@ -176,6 +176,25 @@ fn drawn(shop: &Workshop, figure: &Figure, number: usize, picture: &Picture) -> 
     })
 }
 
+/// What the delivered files are, in words.
+fn kinds(shop: &Workshop, files: &[String]) -> String {
+    let tasks = shop.study.figure.iter().flat_map(|figure| &figure.task);
+    let has_references = tasks
+        .clone()
+        .any(|task| !task.kind().references().is_empty());
+    let has_laws = files.iter().any(|file| file.ends_with(".law"));
+    let kinds = [
+        (true, "the study"),
+        (shop.study.errata.is_some(), "printed formulas"),
+        (has_references, "points of others"),
+        (true, "models"),
+        (has_laws, "their laws"),
+    ];
+    let present: Vec<&str> = kinds.iter().filter(|k| k.0).map(|k| k.1).collect();
+    let (last, before) = present.split_last().unwrap_or((&"", &[]));
+    format!("{} and {last}", before.join(", "))
+}
+
 /// How the page was made: command, date, version, and every source it was made from.
 fn made(shop: &Workshop) -> Result<Markup> {
     let mut files = Vec::new();
@@ -194,8 +213,7 @@ fn made(shop: &Workshop) -> Result<Markup> {
             h2 { "How it was made" a.back href="#top" { "contents" } }
             p { code { (command) } " on " time datetime=(date) { (date) } ", Landau " (env!("CARGO_PKG_VERSION"))
                 @if let Some(commit) = commit { ", commit " (commit) } "." }
-            p { "From " @for file in &files { a href=(file) { (file) } " " } "— the study, printed formulas, references, models "
-                "and their laws." }
+            p { "From " @for file in &files { a href=(file) { (file) } " " } "— " (kinds(shop, &files)) "." }
         }
     })
 }

@@ -2,7 +2,7 @@
 
 mod axis;
 mod check;
-mod parts;
+pub(in crate::reproduce) mod kinds;
 mod place;
 mod printed;
 mod statement;
@@ -10,10 +10,10 @@ mod task;
 mod words;
 
 pub use axis::{Axis, Spacing};
-pub use parts::at_each;
+pub use kinds::{Task, at_each};
 pub use printed::Printed;
 pub use statement::{Quantity, Statement, Threshold, Trend, percent};
-pub use task::{Asked, Drawn, Mark, Of, PanelOf, Reference, Tail, Task, Together};
+pub use task::{Asked, Drawn, Of, PanelOf, Reference, Tail, Together};
 
 pub(in crate::reproduce) use check::Spot;
 pub(in crate::reproduce) use place::{pointed_at, refined};

@@ -1,13 +1,15 @@
 //! Statements decided by numbers: met, missed (where, by how much), or undecided.
 
 use super::super::claim::{Claim, Decision};
+use super::super::needs::Needs;
 use super::super::outcome::{Number, Outcome};
+use super::super::study::kinds::Claims;
 use super::super::study::{Case, Quantity, Statement, Trend, named, percent};
 use super::super::workshop::Workshop;
-use super::each;
 use super::planes::crest;
 use super::points::critical_point;
 use super::rows::{amplitude, converged, rows};
+use super::{Place, Work, each};
 use crate::library::column as derived_column;
 use landau_solver::base::BaseState;
 use landau_solver::error::{Error, Result};
@@ -25,13 +27,13 @@ const ROUNDING: f64 = 1e-12;
 
 /// What decides a statement in one case.
 fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
-    let found = match &statement.at {
+    let critical = match &statement.at {
         Some(asked) => Some(critical_point(setup, case, asked)?),
         None => None,
     };
     if statement.quantity == Quantity::Place {
         let missing = || Error::input("a statement about a place needs `at`: a critical point");
-        let place = found.ok_or_else(missing)?;
+        let place = critical.ok_or_else(missing)?;
         return Ok((place.value, place.error));
     }
     let largest = match statement.quantity {
@@ -44,7 +46,7 @@ fn value(setup: &Setup, case: &Case, statement: &Statement) -> Result<Value> {
     }
     // The critical point may lie along k, or along a parameter.
     let (mut setup, mut k) = (setup.clone(), case.k);
-    if let (Some(point), Some(asked)) = (&found, &statement.at) {
+    if let (Some(point), Some(asked)) = (&critical, &statement.at) {
         k = Some(point.k);
         if asked.vary != "k" {
             setup.set(&[format!("{}={:e}", asked.vary, point.value)])?;
@@ -84,13 +86,13 @@ fn column_value(setup: &Setup, k: f64, statement: &Statement) -> Result<Value> {
         derived.value(&point, point.amplitude()).ok_or_else(none)
     };
     let base = setup.base(None)?;
-    let own = value(&base)?;
-    let other = base
+    let here = value(&base)?;
+    let refined = base
         .refined()
         .map(|base| value(&Arc::new(base)))
         .transpose()?;
-    let error = other.map_or(0.0, |other| (other - own).abs());
-    Ok((own, error.max(ROUNDING * own.abs())))
+    let error = refined.map_or(0.0, |refined| (refined - here).abs());
+    Ok((here, error.max(ROUNDING * here.abs())))
 }
 
 /// Where a quantity is largest along an axis, to half a step of it.
@@ -307,31 +309,38 @@ fn decided(
     }
 }
 
-pub(super) fn claims(
-    shop: &Workshop,
-    figure: &str,
-    cases: &[Case],
-    statements: &[Statement],
-) -> Result<Outcome> {
-    let mut outcome = Outcome::default();
-    for statement in statements {
-        // What has no answer leaves the statement undecided: said there, not as a failure of the study.
-        let mut missing = Vec::new();
-        let values = each(cases, &mut missing, |case| {
-            value(&shop.setup(case)?, case, statement)
-        })?;
-        for (index, value) in &values {
-            let label = named(&cases[*index], &statement.name);
-            let number = Number::new(figure, &cases[*index], &statement.name, label);
-            outcome.numbers.push(Number {
-                decides: Some(statement.words().to_owned()),
-                ..number.answered(value.0, Some(value.1))
-            });
+impl Work for Claims {
+    fn needs(&self, of: &mut Needs) -> Result<()> {
+        for (index, statement) in self.claim.iter().enumerate() {
+            let words = format!("claim {}", index + 1);
+            let spot = of.spot.entry("claim", index, words);
+            of.statement(&spot, statement)?;
         }
-        let decision = decided(statement, cases, &values, &missing);
-        outcome.claims.push(Claim::new(figure, statement, decision));
+        Ok(())
     }
-    Ok(outcome)
+
+    fn run(&self, shop: &Workshop, place: &Place) -> Result<Outcome> {
+        let (figure, cases) = (place.figure, &self.case);
+        let mut outcome = Outcome::default();
+        for statement in &self.claim {
+            // What has no answer leaves the statement undecided: said there, not as a failure of the study.
+            let mut missing = Vec::new();
+            let values = each(cases, &mut missing, |case| {
+                value(&shop.setup(case)?, case, statement)
+            })?;
+            for (index, value) in &values {
+                let label = named(&cases[*index], &statement.name);
+                let number = Number::new(figure, &cases[*index], &statement.name, label);
+                outcome.numbers.push(Number {
+                    decides: Some(statement.words().to_owned()),
+                    ..number.answered(value.0, Some(value.1))
+                });
+            }
+            let decision = decided(statement, cases, &values, &missing);
+            outcome.claims.push(Claim::new(figure, statement, decision));
+        }
+        Ok(outcome)
+    }
 }
 
 #[cfg(test)]

@@ -1,31 +1,67 @@
 //! What a study can ask for, one module a sort of answer.
 
 mod beyond;
+mod circulation;
 mod claims;
 mod convergence;
 mod curves;
 mod draw;
-pub(super) mod laws;
+mod follow;
+mod laws;
+mod marks;
 mod planes;
 mod points;
+mod power_law;
 mod profiles;
 mod rows;
+mod second_harmonic;
+mod spectrum;
 
+use super::needs::Needs;
 use super::outcome::Outcome;
+use super::study::kinds::{Kind, of_any_kind};
 use super::study::{Case, Task};
 use super::workshop::Workshop;
 use landau_solver::error::{Error, Result};
-use landau_solver::study::sweep::RowMode;
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
 
-/// Computes one task of a figure; files that it writes itself begin with `stem`.
-pub(super) fn run(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outcome> {
-    let mut outcome = answer(shop, figure, stem, task)?;
-    outcome.demand_partners(figure, task.cases());
+/// Where the outcome of a task belongs.
+pub(super) struct Place<'a> {
+    /// The figure.
+    pub figure: &'a str,
+    /// How the names of files begin that the task writes itself.
+    pub stem: &'a str,
+}
+
+/// A kind of task that models are asked.
+pub(super) trait Work: Kind {
+    /// Refuses a case whose model does not have what the task asks for. Nothing is computed.
+    ///
+    /// # Errors
+    /// What the model does not have, with its place in the study.
+    fn needs(&self, of: &mut Needs) -> Result<()>;
+
+    /// Computes it. What does not come out is a failure of the outcome.
+    ///
+    /// # Errors
+    /// Bad input; files that cannot be written.
+    fn run(&self, shop: &Workshop, place: &Place) -> Result<Outcome>;
+}
+
+/// A task of any kind, to be asked and computed.
+pub(super) fn work(task: &Task) -> &dyn Work {
+    of_any_kind!(task, kind => kind)
+}
+
+/// Computes one task of a figure.
+pub(super) fn run(shop: &Workshop, place: &Place, task: &Task) -> Result<Outcome> {
+    let work = work(task);
+    let mut outcome = work.run(shop, place)?;
+    outcome.demand_partners(place.figure, work.cases());
     let tables = outcome.pictures.iter_mut();
     for table in tables.filter_map(|picture| picture.table.as_mut()) {
-        table.cases = described(shop, task.cases())?;
+        table.cases = described(shop, work.cases())?;
     }
     Ok(outcome)
 }
@@ -63,121 +99,6 @@ fn described(shop: &Workshop, cases: &[Case]) -> Result<Vec<Value>> {
     described.collect()
 }
 
-fn answer(shop: &Workshop, figure: &str, stem: &str, task: &Task) -> Result<Outcome> {
-    match task {
-        Task::Profiles {
-            case,
-            fields,
-            logarithmic,
-            tail,
-            panel,
-            mark,
-        } => {
-            let wanted = profiles::Wanted {
-                figure,
-                fields,
-                logarithmic: *logarithmic,
-                tail: tail.as_ref(),
-                panel: *panel,
-                marks: mark,
-            };
-            profiles::profiles(shop, case, &wanted)
-        }
-        Task::Law {
-            case,
-            expressions,
-            over,
-            at,
-        } => laws::law(shop, case, expressions, over, at),
-        Task::Convergence {
-            case,
-            over,
-            resolutions,
-        } => convergence::convergence(shop, figure, case, over, resolutions),
-        Task::Spectrum {
-            case,
-            over,
-            resolutions,
-        } => profiles::spectrum(shop, figure, case, over, resolutions),
-        Task::Sweep {
-            case,
-            over,
-            columns,
-            follow,
-            mark,
-            logarithmic,
-            reference,
-        } => {
-            let wanted = curves::Wanted {
-                figure,
-                over,
-                columns,
-                mode: if *follow {
-                    RowMode::Followed(None)
-                } else {
-                    RowMode::Leading
-                },
-                marks: mark,
-                logarithmic: *logarithmic,
-                reference,
-            };
-            curves::sweep(shop, case, &wanted)
-        }
-        Task::Resonance { case, over, mark } => curves::resonance(shop, figure, case, over, mark),
-        Task::Orders {
-            case,
-            over,
-            highest,
-            reference,
-        } => {
-            let asked = beyond::Orders {
-                figure,
-                over,
-                highest: *highest,
-                reference,
-            };
-            beyond::orders(shop, case, &asked)
-        }
-        Task::SecondHarmonic { case, over } => beyond::second_harmonic(shop, case, over),
-        Task::Critical {
-            case,
-            asked,
-            against,
-        } => points::critical(shop, figure, case, asked, against.as_ref()),
-        Task::Claims { case, claim } => claims::claims(shop, figure, case, claim),
-        Task::Values { case, columns } => points::values(shop, figure, case, columns),
-        Task::PowerLaw {
-            case,
-            critical,
-            distances,
-            count,
-        } => curves::power_law(shop, figure, case, critical, *distances, *count),
-        Task::Pattern {
-            case,
-            shade,
-            arrows,
-            wavelengths,
-        } => {
-            let wanted = planes::Wanted {
-                figure,
-                stem,
-                shade,
-                arrows: arrows.as_ref(),
-                wavelengths: *wavelengths,
-            };
-            planes::pattern(shop, case, &wanted)
-        }
-        Task::Circulation {
-            case,
-            over,
-            k,
-            arrows,
-            side,
-            shade,
-        } => planes::circulation(shop, figure, case, over, *k, arrows, *side, shade),
-    }
-}
-
 /// What a failure is named after.
 trait Named {
     fn label(&self) -> &str;
@@ -201,14 +122,14 @@ fn each<I: Named + Sync, R: Send>(
     work: impl Fn(&I) -> Result<R> + Sync + Send,
 ) -> Result<Vec<(usize, R)>> {
     let results: Vec<Result<R>> = items.par_iter().map(&work).collect();
-    let mut found = Vec::new();
+    let mut answers = Vec::new();
     for (index, result) in results.into_iter().enumerate() {
         match result {
-            Ok(value) => found.push((index, value)),
+            Ok(value) => answers.push((index, value)),
             // A study file that asks for what does not exist is wrong as a whole.
             Err(Error::Input(message)) => return Err(Error::Input(message)),
             Err(error) => failures.push(format!("{}: {error}", called(items[index].label()))),
         }
     }
-    Ok(found)
+    Ok(answers)
 }

@@ -1,12 +1,14 @@
 //! Single numbers beside the printed ones: critical points, Landau points.
 
+use super::super::needs::Needs;
 use super::super::outcome::{Number, Outcome};
+use super::super::study::kinds::{self, Values};
 use super::super::study::{Asked, Axis, Case, Of, named};
 use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
 use super::rows::{amplitude, converged, rows};
-use super::{Named, each};
+use super::{Named, Place, Work, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
 use landau_solver::study::critical::{self, Critical, Quantity, Question, Request, Tracking};
@@ -26,9 +28,10 @@ pub(super) fn critical_point(setup: &Setup, case: &Case, asked: &Asked) -> Resul
         },
         k: asked.k.or(case.k.filter(|_| of_case)),
         minimize: asked.minimize,
-        tracking: match asked.follow {
-            true => Tracking::Fastest,
-            false => Tracking::Leading,
+        tracking: if asked.follow {
+            Tracking::Fastest
+        } else {
+            Tracking::Leading
         },
     };
     let question = Question::new(setup, &request)?;
@@ -36,17 +39,104 @@ pub(super) fn critical_point(setup: &Setup, case: &Case, asked: &Asked) -> Resul
 }
 
 /// One question about one case.
-struct Inquiry {
+struct Inquiry<'a> {
     case: Case,
     label: String,
     /// Where it stands on the axis of a curve, or the number of the case.
     place: f64,
     question: usize,
+    asked: &'a Asked,
 }
 
-impl Named for Inquiry {
+impl Named for Inquiry<'_> {
     fn label(&self) -> &str {
         &self.label
+    }
+}
+
+/// The answer to an inquiry, or why there is none.
+type Found = std::result::Result<Critical, String>;
+
+impl Work for kinds::Critical {
+    fn needs(&self, of: &mut Needs) -> Result<()> {
+        if let Some(over) = &self.against {
+            of.axis("against", over)?;
+        }
+        of.questions("asked", &self.asked)
+    }
+
+    fn run(&self, shop: &Workshop, place: &Place) -> Result<Outcome> {
+        let mut outcome = Outcome::default();
+        let inquiries = self.inquiries();
+        let points = each(&inquiries, &mut outcome.failures, |inquiry| {
+            critical_point(&shop.setup(&inquiry.case)?, &inquiry.case, inquiry.asked)
+        })?;
+        let mut points = points.into_iter().peekable();
+        let mut answers: Vec<(&Inquiry, Found)> = Vec::new();
+        for (index, inquiry) in inquiries.iter().enumerate() {
+            // What did not come out stays where its number would stand.
+            let point = match points.next_if(|(answered, _)| *answered == index) {
+                Some((_, point)) => Ok(point),
+                None => Err(outcome.reason(&inquiry.label)),
+            };
+            answers.push((inquiry, point));
+        }
+        outcome.numbers = numbers(place.figure, &answers);
+        if let Some(axis) = &self.against {
+            let panels = self.panels(axis, &answers);
+            let table = table(&axis.name, &answers);
+            picture(shop, &mut outcome, "", &panels, table);
+        }
+        Ok(outcome)
+    }
+}
+
+impl kinds::Critical {
+    /// Every question about every case, each case moved along the axis that it is drawn against.
+    fn inquiries(&self) -> Vec<Inquiry<'_>> {
+        let mut inquiries = Vec::new();
+        for (number, (case, place)) in along(&self.case, self.against.as_ref())
+            .into_iter()
+            .enumerate()
+        {
+            for (question, asked) in self.asked.iter().enumerate() {
+                inquiries.push(Inquiry {
+                    label: named(&case, &asked.name),
+                    case: case.clone(),
+                    place: place.unwrap_or((number + 1) as f64),
+                    question,
+                    asked,
+                });
+            }
+        }
+        inquiries
+    }
+
+    /// A panel a question, and one of the wavenumber where it is an extremum; a curve a case.
+    fn panels(&self, axis: &Axis, answers: &[(&Inquiry, Found)]) -> Vec<Panel> {
+        let mut panels = Vec::new();
+        for (question, asked) in self.asked.iter().enumerate() {
+            let mut values = Panel::new(&asked.name, &axis.name, &asked.vary);
+            let mut waves = Panel::new("critical wavenumber", &axis.name, "k");
+            let to_question = answers.iter().filter(|(i, _)| i.question == question);
+            let to_question: Vec<&(&Inquiry, Found)> = to_question.collect();
+            // One curve a case, along the axis.
+            for (case, answers) in self.case.iter().zip(to_question.chunks(axis.count)) {
+                let curve = |of: fn(&Critical) -> f64| {
+                    let value = |answer: &Found| answer.as_ref().map_or(f64::NAN, of);
+                    let points = answers.iter().map(|(i, answer)| (i.place, value(answer)));
+                    points.collect()
+                };
+                let label = if self.case.len() > 1 { &case.label } else { "" };
+                values.curve(label, Style::Line, curve(|point| point.value));
+                waves.curve(label, Style::Line, curve(|point| point.k));
+            }
+            panels.push(values);
+            if asked.minimize.is_some() {
+                panels.push(waves);
+            }
+        }
+        panels
     }
 }
 
@@ -72,88 +162,40 @@ fn along(cases: &[Case], against: Option<&Axis>) -> Vec<(Case, Option<f64>)> {
     moved
 }
 
-pub(super) fn critical(
-    shop: &Workshop,
-    figure: &str,
-    cases: &[Case],
-    asked: &[Asked],
-    against: Option<&Axis>,
-) -> Result<Outcome> {
-    let mut outcome = Outcome::default();
-    let mut inquiries: Vec<Inquiry> = Vec::new();
-    for (number, (case, place)) in along(cases, against).into_iter().enumerate() {
-        for (question, asked) in asked.iter().enumerate() {
-            inquiries.push(Inquiry {
-                label: named(&case, &asked.name),
-                case: case.clone(),
-                place: place.unwrap_or((number + 1) as f64),
-                question,
-            });
+/// The number of every inquiry; then, where it is an extremum, the wavenumber, which is an answer too.
+fn numbers(figure: &str, answers: &[(&Inquiry, Found)]) -> Vec<Number> {
+    let (mut numbers, mut extrema) = (Vec::new(), Vec::new());
+    for (inquiry, answer) in answers {
+        let (case, asked) = (&inquiry.case, inquiry.asked);
+        let number = Number::new(figure, case, &asked.name, inquiry.label.clone());
+        numbers.push(match answer {
+            Ok(point) => number.answered(point.value, Some(point.error)),
+            Err(reason) => number.failed(reason),
+        });
+        if let (Ok(point), true) = (answer, asked.minimize.is_some()) {
+            let name = format!("k of {}", asked.name);
+            let number = Number::new(figure, case, &name, named(case, &name));
+            extrema.push(number.answered(point.k, None));
         }
     }
-    let found = each(&inquiries, &mut outcome.failures, |inquiry| {
-        let asked = &asked[inquiry.question];
-        critical_point(&shop.setup(&inquiry.case)?, &inquiry.case, asked)
-    })?;
-    let first = against.map_or("case", |a| a.name.as_str());
-    let mut table =
-        Table::new(&[first, "question", "value", "error", "k"]).with_words(&["label", "status"]);
-    let mut found = found.into_iter().peekable();
-    let mut extrema = Vec::new();
-    for (index, inquiry) in inquiries.iter().enumerate() {
-        let Inquiry {
-            case,
-            label,
-            place,
-            question,
-        } = inquiry;
-        let position = (question + 1) as f64;
-        let number = Number::new(figure, case, &asked[*question].name, label.clone());
-        // What did not come out stays where its number would stand.
-        let number = match found.next_if(|(found, _)| *found == index) {
-            Some((_, point)) => {
-                let row = vec![*place, position, point.value, point.error, point.k];
-                table.push(row, &[label, "ok"]);
-                // Where it is an extremum, the wavenumber is an answer too.
-                if asked[*question].minimize.is_some() {
-                    let name = format!("k of {}", asked[*question].name);
-                    let of = Number::new(figure, case, &name, named(case, &name));
-                    extrema.push(of.answered(point.k, None));
-                }
-                number.answered(point.value, Some(point.error))
-            }
-            None => {
-                let reason = outcome.reason(label);
-                let gap = f64::NAN;
-                table.push(vec![*place, position, gap, gap, gap], &[label, &reason]);
-                number.failed(&reason)
-            }
+    numbers.extend(extrema);
+    numbers
+}
+
+/// A row an inquiry.
+fn table(axis: &str, answers: &[(&Inquiry, Found)]) -> Table {
+    let header = [axis, "question", "value", "error", "k"];
+    let mut table = Table::new(&header).with_words(&["label", "status"]);
+    for (inquiry, answer) in answers {
+        let (values, status) = match answer {
+            Ok(point) => ([point.value, point.error, point.k], "ok"),
+            Err(reason) => ([f64::NAN; 3], reason.as_str()),
         };
-        outcome.numbers.push(number);
+        let place = [inquiry.place, (inquiry.question + 1) as f64];
+        let row = place.into_iter().chain(values);
+        table.push(row.collect(), &[&inquiry.label, status]);
     }
-    outcome.numbers.extend(extrema);
-    if let Some(axis) = against {
-        let mut drawn = Vec::new();
-        for (position, asked) in asked.iter().enumerate() {
-            let mut values = Panel::new(&asked.name, &axis.name, &asked.vary);
-            let mut waves = Panel::new("critical wavenumber", &axis.name, "k");
-            let own = table.rows.iter().filter(|r| r[1] == (position + 1) as f64);
-            let own: Vec<&Vec<f64>> = own.collect();
-            // One curve a case, along the axis.
-            for (case, rows) in cases.iter().zip(own.chunks(axis.values().len())) {
-                let of = |column: usize| rows.iter().map(|r| (r[0], r[column])).collect();
-                let label = if cases.len() > 1 { &case.label } else { "" };
-                values.curve(label, Style::Line, of(2));
-                waves.curve(label, Style::Line, of(4));
-            }
-            drawn.push(values);
-            if asked.minimize.is_some() {
-                drawn.push(waves);
-            }
-        }
-        picture(shop, &mut outcome, "", &drawn, table);
-    }
-    Ok(outcome)
+    table
 }
 
 /// A quantity of a Landau point: its value and error, or why it has none.
@@ -190,40 +232,46 @@ fn landau_point(setup: &Setup, k: f64, columns: &[String]) -> Result<Vec<Answer>
     Ok(answers)
 }
 
-/// a0, a2, A_e and derived columns of each case.
-pub(super) fn values(
-    shop: &Workshop,
-    figure: &str,
-    cases: &[Case],
-    columns: &[String],
-) -> Result<Outcome> {
-    let mut outcome = Outcome::default();
-    let points = each(cases, &mut outcome.failures, |case| {
-        let missing = || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
-        let k = case.k.ok_or_else(missing)?;
-        landau_point(&shop.setup(case)?, k, columns)
-    })?;
-    let mut points = points.into_iter().peekable();
-    for (index, case) in cases.iter().enumerate() {
-        let answers = points.next_if(|(answered, _)| *answered == index);
-        let quantities = ["a0", "a2", "A_e"].into_iter();
-        let quantities = quantities.chain(columns.iter().map(String::as_str));
-        for (position, quantity) in quantities.enumerate() {
-            let label = named(case, quantity);
-            let number = Number::new(figure, case, quantity, label.clone());
-            let answer = match &answers {
-                Some((_, answers)) => answers[position].clone(),
-                None => Err(outcome.reason(&case.label)),
-            };
-            // A growth rate or a coefficient that is missing is a failure; a stable base state has no amplitude.
-            if let (Err(reason), true) = (&answer, position < 2 && answers.is_some()) {
-                outcome.failures.push(format!("{label}: {reason}"));
-            }
-            outcome.numbers.push(match answer {
-                Ok((value, error)) => number.answered(value, error),
-                Err(reason) => number.failed(&reason),
-            });
+impl Work for Values {
+    fn needs(&self, of: &mut Needs) -> Result<()> {
+        for (index, text) in self.columns.iter().enumerate() {
+            let spot = of.spot.entry("columns", index, "columns".to_owned());
+            of.column(&spot, text)?;
         }
+        Ok(())
     }
-    Ok(outcome)
+
+    /// a0, a2, A_e and derived columns of each case.
+    fn run(&self, shop: &Workshop, place: &Place) -> Result<Outcome> {
+        let mut outcome = Outcome::default();
+        let points = each(&self.case, &mut outcome.failures, |case| {
+            let missing =
+                || Error::input(format!("the case `{}` needs a wavenumber k", case.label));
+            let k = case.k.ok_or_else(missing)?;
+            landau_point(&shop.setup(case)?, k, &self.columns)
+        })?;
+        let mut points = points.into_iter().peekable();
+        for (index, case) in self.case.iter().enumerate() {
+            let answers = points.next_if(|(answered, _)| *answered == index);
+            let quantities = ["a0", "a2", "A_e"].into_iter();
+            let quantities = quantities.chain(self.columns.iter().map(String::as_str));
+            for (position, quantity) in quantities.enumerate() {
+                let label = named(case, quantity);
+                let number = Number::new(place.figure, case, quantity, label.clone());
+                let answer = match &answers {
+                    Some((_, answers)) => answers[position].clone(),
+                    None => Err(outcome.reason(&case.label)),
+                };
+                // A growth rate or a coefficient that is missing is a failure; a stable base state has no amplitude.
+                if let (Err(reason), true) = (&answer, position < 2 && answers.is_some()) {
+                    outcome.failures.push(format!("{label}: {reason}"));
+                }
+                outcome.numbers.push(match answer {
+                    Ok((value, error)) => number.answered(value, error),
+                    Err(reason) => number.failed(&reason),
+                });
+            }
+        }
+        Ok(outcome)
+    }
 }

@@ -1,45 +1,80 @@
-//! Base states over the cross-stream coordinate, and spectra over the wavenumber.
+//! Base states over the cross-stream coordinate.
 
+use super::super::needs::Needs;
 use super::super::outcome::{Number, Outcome};
-use super::super::study::{Axis, Case, Mark, PanelOf, Tail, at_each, named};
+use super::super::study::kinds::Profiles;
+use super::super::study::{Case, PanelOf, Tail, named};
 use super::super::table::Table;
 use super::super::workshop::Workshop;
 use super::draw::picture;
-use super::each;
+use super::{Place, Work, each};
 use crate::figure::{Panel, Style};
 use crate::library::expression;
 use landau_solver::base::BaseState;
 use landau_solver::error::{Error, Result};
-use landau_solver::model::{C64, End, Expression};
-use landau_solver::problem::Problem;
-use landau_solver::spectrum;
+use landau_solver::model::{End, Expression};
 use landau_solver::study::Setup;
-use landau_solver::study::quadrature::adjoint_mode;
 
 /// Points of a profile.
 const POINTS: usize = 401;
 
-/// What of base states is to be shown, and how.
-pub(super) struct Wanted<'a> {
-    pub figure: &'a str,
-    pub fields: &'a [String],
-    pub logarithmic: bool,
-    pub tail: Option<&'a Tail>,
-    pub panel: PanelOf,
-    pub marks: &'a [Mark],
+/// The profiles of a case.
+struct Profile {
+    /// The position of the case.
+    index: usize,
+    /// The coordinate, then the fields.
+    columns: Vec<Vec<f64>>,
+    heights: Option<Heights>,
 }
 
-pub(super) fn profiles(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Result<Outcome> {
-    let (figure, fields) = (wanted.figure, wanted.fields);
-    let mut outcome = Outcome::default();
-    let found = each(cases, &mut outcome.failures, |case| {
+impl Work for Profiles {
+    fn needs(&self, of: &mut Needs) -> Result<()> {
+        of.bounded("profiles")?;
+        for (index, text) in self.fields.iter().enumerate() {
+            let spot = of.spot.entry("fields", index, "fields".to_owned());
+            of.expression(&spot, text)?;
+        }
+        match self.tail.as_ref().and_then(|tail| tail.predicted.as_ref()) {
+            Some(text) => of.expression(&of.spot.key("tail").key("predicted"), text),
+            None => Ok(()),
+        }
+    }
+
+    fn run(&self, shop: &Workshop, place: &Place) -> Result<Outcome> {
+        let mut outcome = Outcome::default();
+        let answers = each(&self.case, &mut outcome.failures, |case| {
+            self.columns(shop, case)
+        })?;
+        let profile = |(index, (columns, heights))| Profile {
+            index,
+            columns,
+            heights,
+        };
+        let profiles: Vec<Profile> = answers.into_iter().map(profile).collect();
+        let first = shop.setup(&self.case[0])?;
+        let vertical = first.model.structure().coordinate.clone();
+        let vertical = vertical.unwrap_or_default();
+        for profile in &profiles {
+            let numbers = numbers(place.figure, &self.case[profile.index], profile);
+            outcome.numbers.extend(numbers);
+        }
+        let panels = self.panels(&vertical, &profiles);
+        let table = self.table(&vertical, &profiles);
+        picture(shop, &mut outcome, "", &panels, table);
+        Ok(outcome)
+    }
+}
+
+impl Profiles {
+    /// The coordinate and the fields of a case, with the scale heights that are asked for.
+    fn columns(&self, shop: &Workshop, case: &Case) -> Result<(Vec<Vec<f64>>, Option<Heights>)> {
         let setup = shop.setup(case)?;
         let model = setup.model.as_ref();
         let base = setup.base(None)?;
         // A field is an expression too.
-        let expressions = fields.iter().map(|text| expression(model, text));
+        let expressions = self.fields.iter().map(|text| expression(model, text));
         let expressions: Vec<Expression> = expressions.collect::<Result<_>>()?;
-        let mut columns = vec![Vec::new(); fields.len() + 1];
+        let mut columns = vec![Vec::new(); self.fields.len() + 1];
         for place in base.space.evenly(POINTS) {
             let point = base.at(place, 0.0);
             columns[0].push(base.space.y(place));
@@ -47,61 +82,77 @@ pub(super) fn profiles(shop: &Workshop, cases: &[Case], wanted: &Wanted) -> Resu
                 column.push(expression.at_base(model.structure(), &point));
             }
         }
-        let tail = wanted.tail;
+        let tail = self.tail.as_ref();
         let heights = tail.map(|tail| scale_heights(&setup, &base, &columns, tail));
         Ok((columns, heights.transpose()?))
-    })?;
-    let first = shop.setup(&cases[0])?;
-    let vertical = first.model.structure().coordinate.clone();
-    let vertical = vertical.unwrap_or_default();
-    let panel = |title: &str, y: &str| {
-        let mut panel = Panel::new(title, &vertical, y);
-        panel.logarithmic[1] = wanted.logarithmic;
-        let marks = wanted.marks.iter();
-        panel.marks = marks.map(|mark| (mark.at, mark.name.clone())).collect();
-        panel
-    };
-    let mut drawn: Vec<Panel> = match wanted.panel {
-        PanelOf::Field => fields.iter().map(|name| panel("", name)).collect(),
-        PanelOf::Case => {
-            let title = |(index, _): &(usize, _)| panel(&cases[*index].label, &fields.join(", "));
-            found.iter().map(title).collect()
-        }
-    };
-    let mut header = vec!["case", vertical.as_str()];
-    header.extend(fields.iter().map(String::as_str));
-    let mut table = Table::new(&header).with_words(&["label"]);
-    for (position, (index, (columns, heights))) in found.into_iter().enumerate() {
-        for (field, values) in columns[1..].iter().enumerate() {
-            let points = columns[0].iter().copied().zip(values.iter().copied());
-            let (panel, label, style) = match (wanted.panel, field) {
-                (PanelOf::Field, _) => (field, &cases[index].label, Style::Line),
-                (PanelOf::Case, 0) => (position, &fields[field], Style::Line),
-                (PanelOf::Case, _) => (position, &fields[field], Style::Dashed),
-            };
-            drawn[panel].curve(label, style, points.collect());
-        }
-        for i in 0..POINTS {
-            let mut row = vec![(index + 1) as f64];
-            row.extend(columns.iter().map(|column| column[i]));
-            table.push(row, &[&cases[index].label]);
-        }
-        if let Some((fitted, predicted)) = heights {
-            let both = [
-                ("scale height of the tail, fitted", Some(fitted)),
-                ("predicted", predicted),
-            ];
-            for (quantity, value) in both {
-                let label = named(&cases[index], quantity);
-                let number = Number::new(figure, &cases[index], quantity, label);
-                outcome
-                    .numbers
-                    .extend(value.map(|value| number.answered(value, None)));
+    }
+
+    /// A panel a field, or a panel a case.
+    fn panels(&self, vertical: &str, profiles: &[Profile]) -> Vec<Panel> {
+        let panel = |title: &str, y: &str| {
+            let mut panel = Panel::new(title, vertical, y);
+            panel.logarithmic[1] = self.logarithmic;
+            let marks = self.mark.iter();
+            panel.marks = marks.map(|mark| (mark.at, mark.name.clone())).collect();
+            panel
+        };
+        let mut panels: Vec<Panel> = match self.panel {
+            PanelOf::Field => self.fields.iter().map(|name| panel("", name)).collect(),
+            PanelOf::Case => {
+                let title = |p: &Profile| panel(&self.case[p.index].label, &self.fields.join(", "));
+                profiles.iter().map(title).collect()
+            }
+        };
+        for (position, profile) in profiles.iter().enumerate() {
+            for (field, values) in profile.columns[1..].iter().enumerate() {
+                let places = profile.columns[0].iter().copied();
+                let points = places.zip(values.iter().copied());
+                let (panel, label, style) = match (self.panel, field) {
+                    (PanelOf::Field, _) => (field, &self.case[profile.index].label, Style::Line),
+                    (PanelOf::Case, 0) => (position, &self.fields[field], Style::Line),
+                    (PanelOf::Case, _) => (position, &self.fields[field], Style::Dashed),
+                };
+                panels[panel].curve(label, style, points.collect());
             }
         }
+        panels
     }
-    picture(shop, &mut outcome, "", &drawn, table);
-    Ok(outcome)
+
+    fn table(&self, vertical: &str, profiles: &[Profile]) -> Table {
+        let mut header = vec!["case", vertical];
+        header.extend(self.fields.iter().map(String::as_str));
+        let mut table = Table::new(&header).with_words(&["label"]);
+        for profile in profiles {
+            for i in 0..POINTS {
+                let mut row = vec![(profile.index + 1) as f64];
+                row.extend(profile.columns.iter().map(|column| column[i]));
+                table.push(row, &[&self.case[profile.index].label]);
+            }
+        }
+        table
+    }
+}
+
+/// The scale heights of a case, where they are asked for.
+fn numbers(figure: &str, case: &Case, profile: &Profile) -> Vec<Number> {
+    let Some(heights) = &profile.heights else {
+        return Vec::new();
+    };
+    let values = [
+        ("scale height of the tail, fitted", Some(heights.fitted)),
+        ("predicted", heights.predicted),
+    ];
+    let number = |(quantity, value): (&str, Option<f64>)| {
+        let number = Number::new(figure, case, quantity, named(case, quantity));
+        value.map(|value| number.answered(value, None))
+    };
+    values.into_iter().filter_map(number).collect()
+}
+
+/// Scale heights of the tail.
+struct Heights {
+    fitted: f64,
+    predicted: Option<f64>,
 }
 
 /// h of exp(−y/h), fitted, and what it ought to be.
@@ -110,7 +161,7 @@ fn scale_heights(
     base: &BaseState,
     columns: &[Vec<f64>],
     tail: &Tail,
-) -> Result<(f64, Option<f64>)> {
+) -> Result<Heights> {
     let place = |fraction: f64| ((POINTS - 1) as f64 * fraction).round() as usize;
     let [a, b] = tail.between.map(|fraction| place(fraction.clamp(0.0, 1.0)));
     let fall = (columns[1][a] / columns[1][b]).ln();
@@ -119,82 +170,8 @@ fn scale_heights(
         let top = base.at_end(End::Upper);
         Ok::<f64, Error>(expression.at_base(base.structure(), &top))
     });
-    Ok((
-        (columns[0][b] - columns[0][a]) / fall,
-        predicted.transpose()?,
-    ))
-}
-
-pub(super) fn spectrum(
-    shop: &Workshop,
-    figure: &str,
-    cases: &[Case],
-    over: &Axis,
-    resolutions: &[usize],
-) -> Result<Outcome> {
-    let mut outcome = Outcome::default();
-    let all = at_each(cases, resolutions);
-    let found = each(&all, &mut outcome.failures, |case| {
-        let setup = shop.setup(case)?;
-        let problem = &setup.problem(&setup.base(None)?)?;
-        let mut rows = Vec::new();
-        for k in over.values() {
-            let mode = spectrum::leading(problem, k)?;
-            // Where inverse iteration finds no isolated partner, the nearest of all of L†.
-            let adjoint = match adjoint_mode(problem, &mode) {
-                Ok(adjoint) => adjoint.c,
-                Err(_) => nearest_adjoint(problem, k, mode.c)?,
-            };
-            let gap = (adjoint.conj() - mode.c).norm();
-            rows.push([k, mode.c.re, adjoint.re, gap]);
-        }
-        Ok(rows)
-    })?;
-    let panel = |case: &Case| Panel::new(&named(case, "least stable mode"), "k", "a0");
-    let mut drawn: Vec<Panel> = cases.iter().map(panel).collect();
-    let mut table = Table::new(&["case", "k", "L", "L†", "difference"]).with_words(&["label"]);
-    let mut difference = Panel::new("L against L†", "k", "|c0(L) − conj c0(L†)|");
-    difference.logarithmic[1] = true;
-    for (index, rows) in found {
-        let label = &all[index].label;
-        let of =
-            |column: usize| -> Vec<(f64, f64)> { rows.iter().map(|r| (r[0], r[column])).collect() };
-        // Of one case after another, all resolutions.
-        let panel = &mut drawn[index / resolutions.len()];
-        let resolution = format!("M = {}", resolutions[index % resolutions.len()]);
-        panel.curve(&format!("L, {resolution}"), Style::Line, of(1));
-        panel.curve(&format!("L†, {resolution}"), Style::Dots, of(2));
-        let quantity = format!("largest |L − L†| over {}", over.name);
-        let number = Number::new(
-            figure,
-            &all[index],
-            &quantity,
-            format!("{label}: {quantity}"),
-        );
-        // A gap that is no number is larger than any.
-        let wider = |most: f64, row: &[f64; 4]| match row[3].is_nan() || row[3] > most {
-            true => row[3],
-            false => most,
-        };
-        outcome
-            .numbers
-            .push(number.answered(rows.iter().fold(0.0, wider), None));
-        difference.curve(label, Style::Line, of(3));
-        for row in &rows {
-            let [k, direct, adjoint, gap] = *row;
-            let row = vec![(index + 1) as f64, k, direct, adjoint, gap];
-            table.push(row, &[label]);
-        }
-    }
-    drawn.push(difference);
-    picture(shop, &mut outcome, "", &drawn, table);
-    Ok(outcome)
-}
-
-/// The eigenvalue of L† whose conjugate is nearest to c.
-fn nearest_adjoint(problem: &Problem, k: f64, c: C64) -> Result<C64> {
-    let values = spectrum::adjoint_eigenvalues(problem, k)?.values;
-    let gap = |d: &C64| (d.conj() - c).norm();
-    let nearest = values.into_iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
-    nearest.ok_or_else(|| Error::computation("L† has no finite eigenvalue"))
+    Ok(Heights {
+        fitted: (columns[0][b] - columns[0][a]) / fall,
+        predicted: predicted.transpose()?,
+    })
 }

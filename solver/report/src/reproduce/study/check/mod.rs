@@ -2,7 +2,7 @@
 
 mod claims;
 mod critical;
-mod task;
+mod kinds;
 
 use super::place::{Mistake, Step};
 use super::{Axis, Case, Figure, Spacing, Study};
@@ -33,7 +33,7 @@ impl Spot {
             .entry(
                 "task",
                 task.0,
-                format!("task {} ({})", task.0 + 1, task.1.kind()),
+                format!("task {} ({})", task.0 + 1, task.1.kind().name()),
             )
     }
 
@@ -141,8 +141,8 @@ pub(super) fn check(study: &Study) -> Checked {
         spot.not_empty("task", &figure.task, "tasks")?;
         for (number, task) in figure.task.iter().enumerate() {
             let spot = Spot::task((index, figure), (number, task));
-            cases(&spot, task.cases())?;
-            task::check(&spot, task)?;
+            cases(&spot, task.kind().cases())?;
+            task.kind().check(&spot)?;
         }
     }
     Ok(())
