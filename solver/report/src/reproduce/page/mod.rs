@@ -14,7 +14,7 @@ use super::workshop::{Provenance, Workshop};
 use crate::data::csvw;
 use landau_solver::error::Result;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use text::rich;
+use text::{rich, stop};
 
 const STYLE: &str = include_str!("style.css");
 
@@ -56,7 +56,7 @@ pub(super) fn write(shop: &Workshop, formulas: &Formulas, outcomes: &[Outcome]) 
                 main {
                     h1 { (study.title) }
                     p { (rich(&study.introduction, &study.symbol)) }
-                    p { "Reproduced: " (study.source) ". M = " (study.resolution) " unless a figure says otherwise. “Printed” is "
+                    p { "Reproduced: " (study.source) (stop(&study.source)) " M = " (study.resolution) " unless a figure says otherwise. “Printed” is "
                         "what the source has, with our difference in units of its last printed digit. All numbers: " a href="numbers.json" { "numbers.json" } ", all statements: "
                         a href="claims.json" { "claims.json" } "." }
                     ul.contents { @for figure in &study.figure {
@@ -168,7 +168,7 @@ fn drawn(shop: &Workshop, figure: &Figure, number: usize, picture: &Picture) -> 
                 img class=(class) src=(svg) alt=(format!("{} {}: {}", heading(figure), figure.title, picture.says).trim()) loading="lazy";
             }
             figcaption {
-                @if !picture.caption.is_empty() { (rich(&picture.caption, symbols)) ". " }
+                @if !picture.caption.is_empty() { (rich(&picture.caption, symbols)) (stop(&picture.caption)) " " }
                 (picture.says) " Data: "
                 @for file in &files { a href=(file) { (file) } " " }
             }

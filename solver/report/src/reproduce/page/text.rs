@@ -142,9 +142,24 @@ fn mathml(latex: &str, display_mode: DisplayMode) -> Result<String> {
     ))
 }
 
+/// The full stop behind a text that does not end as a sentence does.
+pub(super) fn stop(text: &str) -> &'static str {
+    if text.ends_with(['.', '!', '?']) {
+        ""
+    } else {
+        "."
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::inline;
+    use super::{inline, stop};
+
+    #[test]
+    fn no_full_stop_is_doubled() {
+        let ends = ["J. Fluid Mech. 23 (1965)", "It grows.", "Why?", ""].map(stop);
+        assert_eq!(ends, [".", "", "", "."]);
+    }
 
     /// A formula brings no elements, scripts or styles of its own; it is shown as it is written.
     #[test]
