@@ -73,7 +73,7 @@ impl Deriver<'_> {
         if profiles.is_empty() {
             // A closed base that does not satisfy a balance shows when it is evaluated, where a
             // symbolic test could not see through a root.
-            let integrals = self.base_integrals(&mut Vec::new());
+            let integrals = self.base_integrals(mistakes);
             let offsets = Offsets {
                 rows: rows.map(|_| 0),
                 columns: Table::default(),
@@ -154,14 +154,8 @@ impl Deriver<'_> {
             _ => None,
         });
         for integral in declared.chain(unknowns) {
-            match self.base_part(integral.integrand) {
-                Some(integrand) => integrals.push((integrand, integral.value)),
-                None => mistakes.push(Diagnostic::new(
-                    integral.location.clone(),
-                    "the integrand has no value in the base state",
-                    "an expression that is smooth at the base state",
-                )),
-            }
+            let integrand = self.base_part(integral.integrand, &integral.location, mistakes);
+            integrals.extend(integrand.map(|integrand| (integrand, integral.value)));
         }
         integrals
     }

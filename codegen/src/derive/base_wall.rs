@@ -53,7 +53,7 @@ pub(super) fn base_conditions(
     let mut replaced: Vec<(End, FieldId)> = Vec::new();
     for condition in written_base {
         let end = condition.end;
-        let residual = deriver.base_part(condition.residual)?;
+        let residual = deriver.base_part(condition.residual, &condition.location, mistakes)?;
         if let Some(field) = solved_field(deriver, problem, residual) {
             replaced.push((end, field));
             found.push(BaseCondition { end, residual });
@@ -61,7 +61,7 @@ pub(super) fn base_conditions(
     }
     for condition in written {
         let end = condition.end;
-        let residual = deriver.base_part(condition.residual)?;
+        let residual = deriver.base_part(condition.residual, &condition.location, mistakes)?;
         let field = solved_field(deriver, problem, residual);
         if field.is_some_and(|field| !replaced.contains(&(end, field))) {
             found.push(BaseCondition { end, residual });
@@ -135,6 +135,7 @@ pub(super) fn base_checks(
     problem: &CaseProblem,
     written: &[&Condition],
     written_base: &[&Condition],
+    mistakes: &mut Vec<Diagnostic>,
 ) -> Vec<BaseCheck> {
     let fields = |graph: &Graph, id: Id| -> Vec<FieldId> {
         let nodes = graph.topological(&[id]).into_iter();
@@ -157,7 +158,8 @@ pub(super) fn base_checks(
                     .iter()
                     .any(|f| named.contains(f))
         });
-        let solved = deriver.base_part(condition.residual).is_none_or(|base| {
+        let base = deriver.base_part(condition.residual, &condition.location, mistakes);
+        let solved = base.is_none_or(|base| {
             base_fields(deriver, base)
                 .iter()
                 .any(|f| problem.solved.contains(f))

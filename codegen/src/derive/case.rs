@@ -87,7 +87,7 @@ pub(super) fn derive(
     }
     check_count(deriver, problem.needed, &conditions, &written, mistakes)?;
     let base_conditions = base_conditions(deriver, &problem, &written, &written_base, mistakes)?;
-    let base_checks = base_checks(deriver, &problem, &written, &written_base);
+    let base_checks = base_checks(deriver, &problem, &written, &written_base, mistakes);
     let rules = base_rules(deriver.graph, &base_conditions);
     let problem = CaseProblem {
         walls: &conditions,
@@ -178,7 +178,7 @@ fn adjoint_conditions(
         let mut own = Vec::new();
         for (jet, combination) in &demanded {
             let mut coefficients = combination.values().flat_map(|symbol| symbol.values());
-            if coefficients.any(|&id| regular::divides_by_zero(deriver.graph, id)) {
+            if coefficients.any(|&id| deriver.graph.is_undefined(id)) {
                 return Err(singular_end(deriver, *end));
             }
             own.push(conjugate(deriver.graph, combination));

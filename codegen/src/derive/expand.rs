@@ -20,9 +20,21 @@ const MOST_PRODUCTS: usize = 1_000_000;
 /// Order of derivatives that a model has use for.
 const HIGHEST_DERIVATIVE: u8 = 64;
 
-/// Why an expression has no expansion.
+/// Why an expression has no expansion, and what to write in its place.
 #[derive(Debug, Clone)]
-pub struct Inexpandable(pub String);
+pub struct Inexpandable {
+    pub reason: String,
+    pub remedy: Option<&'static str>,
+}
+
+impl From<&str> for Inexpandable {
+    fn from(reason: &str) -> Self {
+        Inexpandable {
+            reason: reason.to_owned(),
+            remedy: None,
+        }
+    }
+}
 
 /// What an expansion has to know of its model.
 pub struct Expander<'a> {
@@ -81,7 +93,7 @@ impl<'a> Expander<'a> {
                 for (base, exponent) in factors {
                     let form = self.power(graph, base, &exponent)?;
                     if total.terms.len() * form.terms.len() > MOST_PRODUCTS {
-                        return Err(Inexpandable("it has too many terms".into()));
+                        return Err("it has too many terms".into());
                     }
                     total = total.multiply(graph, &form, self.order);
                 }
@@ -91,10 +103,10 @@ impl<'a> Expander<'a> {
                 let form = self.expand(graph, argument)?;
                 let value = form.base(graph);
                 if function == Function::Log && graph.vanishes(value) {
-                    return Err(Inexpandable(
-                        "a logarithm, or a power with a parameter in its exponent, of something that vanishes in the base state"
-                            .into(),
-                    ));
+                    return Err(Inexpandable {
+                        reason: "a logarithm, or a power with a parameter in its exponent, of something that vanishes in the base state".to_owned(),
+                        remedy: Some("a power expands around zero if its exponent is written as a whole number: `u^2`, not `u^m`"),
+                    });
                 }
                 let taylor = self.function_series(graph, function, &form);
                 Ok(form.compose(graph, &taylor))
@@ -113,12 +125,15 @@ impl<'a> Expander<'a> {
                     .flatten()
                     .any(|jet| order(jet) >= HIGHEST_DERIVATIVE)
                 {
-                    return Err(Inexpandable(format!(
-                        "it holds a derivative beyond the order {HIGHEST_DERIVATIVE}"
-                    )));
+                    return Err(Inexpandable {
+                        reason: format!(
+                            "it holds a derivative beyond the order {HIGHEST_DERIVATIVE}"
+                        ),
+                        remedy: None,
+                    });
                 }
                 if operator == Operator::AbsDx && form.highest_degree() > 1 {
-                    return Err(Inexpandable("|∂x| of a nonlinear expression".into()));
+                    return Err("|∂x| of a nonlinear expression".into());
                 }
                 Ok(self.without_uniform(form.differentiate(graph, operator)))
             }
@@ -158,13 +173,9 @@ impl<'a> Expander<'a> {
             return Ok(form);
         }
         let value = form.base(graph);
-        if graph.is_zero(value) {
-            let positive = exponent.is_integer() && *exponent > Rational::zero();
-            if !positive {
-                return Err(Inexpandable(
-                    "a root or a quotient of something that vanishes in the base state".into(),
-                ));
-            }
+        let is_whole = exponent.is_integer() && *exponent > Rational::zero();
+        if !is_whole && graph.vanishes(value) {
+            return Err("a root or a quotient of something that vanishes in the base state".into());
         }
         let mut taylor = Vec::with_capacity(self.order + 1);
         let mut binomial = Rational::one();

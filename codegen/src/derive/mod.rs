@@ -146,7 +146,7 @@ impl<'a> Deriver<'a> {
         if balances.len() < model.balances.len() {
             return None;
         }
-        let divisors = self.divisors();
+        let divisors = self.divisors(mistakes)?;
         let divided: Table<BalanceId, Form> = balances
             .iter()
             .zip(&divisors)
@@ -275,23 +275,71 @@ impl<'a> Deriver<'a> {
             &self.uniform,
             &self.dependence,
         );
-        match expander.expand(self.graph, id) {
+        let expansion = expander
+            .expand(self.graph, id)
+            .and_then(|form| self.with_values(form));
+        match expansion {
             Ok(form) => Some(form),
-            Err(Inexpandable(reason)) => {
+            Err(Inexpandable { reason, remedy }) => {
                 let message = format!("there is no expansion around the base state: {reason}");
                 let expected = "an expression that is smooth at the base state";
-                mistakes.push(Diagnostic::new(place.clone(), message, expected));
+                mistakes.push(
+                    Diagnostic::new(place.clone(), message, expected)
+                        .maybe_hint(remedy.map(str::to_owned)),
+                );
                 None
             }
         }
     }
 
-    /// The base-state value of an expression of the full state.
-    pub fn base_part(&mut self, id: Id) -> Option<Id> {
+    /// The base-state value of an expression of the full state, or a mistake at `place`.
+    pub fn base_part(
+        &mut self,
+        id: Id,
+        place: &Location,
+        mistakes: &mut Vec<Diagnostic>,
+    ) -> Option<Id> {
         let mut expander =
             Expander::new(0, &self.model.base.closed, &self.uniform, &self.dependence);
-        let form = expander.expand(self.graph, id).ok()?;
-        Some(form.base(self.graph))
+        let expansion = expander
+            .expand(self.graph, id)
+            .and_then(|form| self.with_values(form));
+        match expansion {
+            Ok(form) => Some(form.base(self.graph)),
+            Err(Inexpandable { reason, remedy }) => {
+                let message = format!("this has no value in the base state: {reason}");
+                let expected = "an expression that is finite at the base state";
+                mistakes.push(
+                    Diagnostic::new(place.clone(), message, expected)
+                        .maybe_hint(remedy.map(str::to_owned)),
+                );
+                None
+            }
+        }
+    }
+
+    /// The form, if all its coefficients have values once the laws are put in.
+    ///
+    /// The expansion keeps laws opaque, so it does not see that the slope of √n is infinite where n⁰ = 0.
+    fn with_values(&mut self, form: Form) -> Result<Form, Inexpandable> {
+        let coefficients: Vec<Id> = form.terms.values().copied().collect();
+        let is_undefined = self.aside(|deriver| {
+            let (laws, closed) = (&deriver.model.laws, &deriver.model.base.closed);
+            let mut opener = Opener::new(laws, closed, &deriver.uniform);
+            coefficients.into_iter().any(|id| {
+                let opened = opener.at_base(deriver.graph, id);
+                deriver.graph.is_undefined(opened)
+            })
+        });
+        if is_undefined {
+            return Err(Inexpandable {
+                reason: "a law has no value or no derivative there".to_owned(),
+                remedy: Some(
+                    "the law holds a root, a quotient, a logarithm or a power with a parameter in its exponent of something that vanishes in the base state",
+                ),
+            });
+        }
+        Ok(form)
     }
 
     /// The result of an analysis that leaves no expression behind: what is derived later does not depend on it.
@@ -313,13 +361,23 @@ impl<'a> Deriver<'a> {
         self.graph.vanishes(opened)
     }
 
-    fn divisors(&mut self) -> Table<BalanceId, Id> {
+    /// What each balance is divided by: 1 if the spec says nothing.
+    fn divisors(&mut self, mistakes: &mut Vec<Diagnostic>) -> Option<Table<BalanceId, Id>> {
         let mut divisors = Table::default();
         for balance in &self.model.balances {
-            let divisor = balance.divisor.and_then(|d| self.base_part(d));
-            divisors.push(divisor.unwrap_or_else(|| self.graph.one()));
+            let divisor = match balance.divisor {
+                Some(divisor) => self.base_part(divisor, &balance.location, mistakes)?,
+                None => self.graph.one(),
+            };
+            if self.aside(|deriver| deriver.vanishes_opened(divisor)) {
+                let message = format!("`{}` is divided by zero", balance.name);
+                let expected = "a divisor that does not vanish in the base state";
+                mistakes.push(Diagnostic::new(balance.location.clone(), message, expected));
+                return None;
+            }
+            divisors.push(divisor);
         }
-        divisors
+        Some(divisors)
     }
 
     fn nonlinear(

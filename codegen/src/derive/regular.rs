@@ -8,23 +8,12 @@ use super::Deriver;
 use super::boundary::{Combination, split};
 use super::linear::AdjointTerm;
 use super::wall::{BaseRules, at_end};
-use crate::graph::{BalanceId, FieldId, Graph, Id, Node, Variable};
+use crate::graph::{BalanceId, FieldId, Id, Variable};
 use crate::model::End;
-use num_traits::{Signed, Zero};
 use std::collections::BTreeMap;
 
 /// Powers of the distance that are looked for.
 const HIGHEST_POWER: usize = 4;
-
-/// Whether an expression divides by zero, put at an end.
-pub(super) fn divides_by_zero(graph: &Graph, id: Id) -> bool {
-    graph.any(id, |node| match node {
-        Node::Product(factors) => factors.iter().any(|(base, exponent)| {
-            exponent.is_negative() && graph.as_number(*base).is_some_and(Zero::is_zero)
-        }),
-        _ => false,
-    })
-}
 
 /// What regularity asks of the adjoint fields at an end, the conditions of highest derivative first.
 pub(super) fn conditions(
@@ -59,7 +48,7 @@ fn leading(
         let mut values = Vec::with_capacity(terms.len());
         for &coefficient in &coefficients {
             let value = at_end(deriver.graph, place, end, rules, coefficient);
-            if divides_by_zero(deriver.graph, value) {
+            if deriver.graph.is_undefined(value) {
                 return None;
             }
             values.push((value, deriver.graph.vanishes(value)));

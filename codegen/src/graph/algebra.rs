@@ -99,6 +99,9 @@ impl Graph {
         let mut terms: BTreeMap<Id, Rational> = BTreeMap::new();
         let mut work = 0;
         for (id, coefficient) in parts {
+            if self.is_pole(id) {
+                return id;
+            }
             match self.node(id) {
                 Node::Number(value) => constant += value * &coefficient,
                 Node::Sum(inner, inner_terms) => {
@@ -112,6 +115,13 @@ impl Graph {
             }
         }
         self.work += work;
+        // ln 0 − ln 0
+        if terms
+            .iter()
+            .any(|(&term, c)| c.is_zero() && self.is_undefined(term))
+        {
+            return self.undefined();
+        }
         terms.retain(|_, c| !c.is_zero());
         let mut terms: Vec<_> = terms.into_iter().collect();
         match (terms.len(), constant.is_zero()) {
@@ -149,6 +159,9 @@ impl Graph {
         let mut work = 0;
         stack.reverse();
         while let Some((id, exponent)) = stack.pop() {
+            if self.is_pole(id) || self.is_pole_of(id, &exponent) {
+                return self.undefined();
+            }
             if exponent.is_zero() {
                 continue;
             }
@@ -191,6 +204,13 @@ impl Graph {
             }
         }
         self.work += work;
+        // 0 · ln 0, ln 0 / ln 0
+        let is_lost = |(&base, exponent): (&Id, &Rational)| {
+            (number.is_zero() || exponent.is_zero()) && self.is_undefined(base)
+        };
+        if factors.iter().any(is_lost) {
+            return self.undefined();
+        }
         if number.is_zero() {
             return self.zero();
         }

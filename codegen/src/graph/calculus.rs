@@ -39,6 +39,8 @@ impl Graph {
                     .collect();
                 self.sum(parts)
             }
+            // 1/0 has no derivative either.
+            Node::Product(_) if self.is_pole(id) => id,
             // (Π b^e)' = Σ e b^(e−1) b' Π others
             Node::Product(factors) => {
                 let mut parts = Vec::new();

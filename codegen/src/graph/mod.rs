@@ -9,6 +9,7 @@ mod algebra;
 mod calculus;
 mod linear;
 mod node;
+mod undefined;
 mod zero;
 
 pub use calculus::Variable;
@@ -35,9 +36,11 @@ impl Id {
 #[derive(Default, Clone)]
 pub struct Graph {
     nodes: Vec<Node>,
-    known: HashMap<Node, Id>,
+    ids: HashMap<Node, Id>,
     /// Levels of each node down to its leaves.
     depths: Vec<u32>,
+    /// Whether each node holds 1/0 or ln 0.
+    undefined: Vec<bool>,
     /// Levels of the body of each law.
     law_depths: Vec<u32>,
     /// Terms and factors handled so far.
@@ -72,7 +75,7 @@ impl Graph {
 
     /// The id of a node that is already in canonical form.
     pub(crate) fn intern(&mut self, node: Node) -> Id {
-        if let Some(&id) = self.known.get(&node) {
+        if let Some(&id) = self.ids.get(&node) {
             return id;
         }
         let id = Id(self.nodes.len() as u32);
@@ -86,8 +89,9 @@ impl Graph {
         };
         node.for_each_child(|child| below = below.max(self.depths[child.index()]));
         self.depths.push(below + 1);
+        self.undefined.push(self.is_undefined_node(&node));
         self.nodes.push(node.clone());
-        self.known.insert(node, id);
+        self.ids.insert(node, id);
         id
     }
 

@@ -5,7 +5,7 @@
 //! there with probability of about 2⁻⁵⁰. Two seeds must agree. Roots and elementary functions count
 //! as atoms of their argument's value. The answer is the same on every run.
 
-use super::{Graph, Id, Node, Rational};
+use super::{Function, Graph, Id, Node, Rational};
 use num_traits::{Signed, ToPrimitive};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -18,6 +18,9 @@ impl Graph {
     pub fn vanishes(&self, id: Id) -> bool {
         if self.as_number(id).is_some() {
             return self.is_zero(id);
+        }
+        if self.is_undefined(id) {
+            return false;
         }
         SEEDS.iter().all(|&seed| {
             let mut values = HashMap::new();
@@ -54,13 +57,16 @@ impl Graph {
                         base
                     };
                     let mut factor = power(signed, size);
-                    if !exponent.is_integer() {
+                    if base == 0 {
+                        factor = 0;
+                    } else if !exponent.is_integer() {
                         factor = mul(factor, scatter((seed, base, exponent - whole)));
                     }
                     total = mul(total, factor);
                 }
                 Some(total)
             }
+            Node::Call(Function::Log, argument) if values[argument] == Some(0) => None,
             Node::Call(function, argument) => Some(scatter((seed, function, values[argument]?))),
             Node::Select(switch, branches) => {
                 let branches: Option<Vec<u64>> = branches.iter().map(|b| values[b]).collect();

@@ -62,7 +62,7 @@ impl Names {
                     "at most 100",
                 ));
             }
-            if self.graph.is_zero(base) && size <= 0.0 {
+            if size <= 0.0 && self.graph.vanishes(base) {
                 let message = "zero to a power that is not positive";
                 return Err(Diagnostic::new(
                     written.location.clone(),
@@ -71,6 +71,11 @@ impl Names {
                 ));
             }
             return Ok(self.graph.pow(base, value));
+        }
+        if self.graph.vanishes(base) {
+            let message = "zero to a power with a parameter in its exponent";
+            let expected = "a positive number as exponent";
+            return Err(Diagnostic::new(written.location.clone(), message, expected));
         }
         // a^b = exp(b log a)
         let log = self.graph.call(Function::Log, base);

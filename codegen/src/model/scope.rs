@@ -243,6 +243,14 @@ impl Names {
         }
         if let Some(function) = Function::ALL.into_iter().find(|f| f.name() == word) {
             let argument = self.one_argument(name, arguments, place, view)?;
+            if function == Function::Log && self.graph.vanishes(argument) {
+                let message = "the logarithm of zero";
+                return Err(Diagnostic::new(
+                    place.clone(),
+                    message,
+                    "a nonzero argument",
+                ));
+            }
             return Ok(self.graph.call(function, argument));
         }
         if word == "integral" {
