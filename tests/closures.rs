@@ -190,7 +190,7 @@ fn no_closure_is_dropped() {
             mass: dt(n) = dx(dx(n)) + dy(dy(n));
             flow: dt(u) = dx(dx(u)) + dy(dy(u)) - u + n*u;
         }
-        base { u = 0; integral(n) = F; guess { n = F; } }
+        base { u = 0; n = F; integral(n) = F; }
         boundary { at y = 0 { dy(n) = 0; u = 0; } at y = 1 { dy(n) = 0; u = 0; } }
         mean { conserved integral(u); }";
     refused(two, "not conserved");

@@ -337,20 +337,20 @@ base { u = 0; }
 fn a_law_singular_at_the_base_state_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("root.model");
-    let spec = "model root \"A square root at zero\";
+    let spec = "model root \"A square root at zero, for one value of a parameter\";
 coordinates { x: periodic; y: 0..1; }
-parameters { r = 1; }
+parameters { r = 1; a = 1; }
 fields { u; }
 law root = sqrt(u);
-balance { motion: dt(u) = dx(dx(u)) + dy(dy(u)) + r*root; }
-base { u = 0; }
-boundary { at y = 0 { u = 0; } at y = 1 { u = 0; } }
+balance { motion: dt(u) = dx(dx(u)) + dy(dy(u)) + r*(root - sqrt(a)); }
+base { u = a; }
+boundary { at y = 0 { u = a; } at y = 1 { u = a; } }
 ";
     std::fs::write(&path, spec).expect("written");
     let path = path.to_str().expect("a path");
     assert_eq!(landau(&["check", path]).status, 0);
     for command in ["point", "spectrum", "verify"] {
-        let answer = landau(&[command, path, "--k", "1"]);
+        let answer = landau(&[command, path, "--k", "1", "--set", "a=0"]);
         assert_eq!((answer.status, answer.out.as_str()), (3, ""), "{command}");
         let told = ["balance `motion`", "singular at the base state"];
         assert!(
@@ -359,6 +359,13 @@ boundary { at y = 0 { u = 0; } at y = 1 { u = 0; } }
             answer.err
         );
     }
+    // A base state that vanishes for all parameters is refused before any work.
+    let vanishing = spec.replace("u = a", "u = 0").replace(" - sqrt(a)", "");
+    std::fs::write(path, vanishing.replace(" a = 1;", "")).expect("written");
+    let answer = landau(&["check", path]);
+    assert_eq!(answer.status, 2);
+    assert!(answer.err.contains("root.model:6:11"), "{}", answer.err);
+    assert!(answer.err.contains("the law `root`"), "{}", answer.err);
 }
 
 /// Every key of every JSON object stands in the page that lists them.

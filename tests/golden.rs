@@ -89,3 +89,32 @@ fn adjoint_conditions_of_the_paper() {
         );
     }
 }
+
+/// Emitted code names the balance of each block of lines, has no silent zero for what a model lacks, and can be read in
+/// a folder of the user's choice.
+#[test]
+fn emitted_code_can_be_read() {
+    let path = root().join("spec/models/rayleigh_benard.model");
+    let sources = read_sources(&path).expect("the spec can be read");
+    let (_, _, code) = generate_module(sources).unwrap_or_else(|e| panic!("{e}"));
+    let linear = code
+        .split("fn linear_coefficients")
+        .nth(1)
+        .expect("the kernel of L");
+    let linear = linear.split("\n}").next().expect("its body");
+    for balance in ["momentum_x", "momentum_z", "continuity", "heat"] {
+        let comment = format!("    // the balance `{balance}`\n");
+        assert!(linear.contains(&comment), "{comment} is not in {linear}");
+    }
+    assert!(!code.contains("landau_comment"), "a comment is left over");
+    assert!(!code.contains("_ => C64") && !code.contains("_ => out"));
+    assert!(code.contains("absent => panic!"));
+    let crate_folder = tempfile::tempdir().expect("a folder");
+    let models = crate_folder.path().join("models");
+    fs::create_dir(&models).expect("a folder");
+    fs::copy(&path, models.join("rayleigh_benard.model")).expect("a copy");
+    let readable = crate_folder.path().join("to/read");
+    landau_codegen::build::generate_readable(crate_folder.path(), &readable).expect("the code");
+    let written = fs::read_to_string(readable.join("rayleigh_benard.rs")).expect("the module");
+    assert!(written.contains("fn linear_coefficients"));
+}

@@ -13,12 +13,18 @@ use std::{env, fs, io};
 /// Paths of open descriptors: what they lead to has been opened already, so that reading does not wait for it.
 const DESCRIPTORS: [&str; 3] = ["/dev/stdin", "/dev/fd", "/proc/self/fd"];
 
-/// Generates `$OUT_DIR/models.rs` from `models/*.model` and `laws/*.law` of the crate being built.
+/// The variable that names a folder for a second copy of the generated code, where a person can read it.
+const EMIT_DIR: &str = "LANDAU_EMIT_DIR";
+
+/// Generates `$OUT_DIR/models.rs` from `models/*.model` and `laws/*.law` of the crate being built; and in
+/// `$LANDAU_EMIT_DIR`, if that is set, for reading.
 ///
 /// Mistakes are printed as `cargo::error=` lines and end the build script.
 pub fn run() {
-    let outcome = directories().and_then(|(root, out)| generate_folder(&root, &out));
-    if let Err(mistakes) = outcome {
+    println!("cargo::rerun-if-changed=models");
+    println!("cargo::rerun-if-changed=laws");
+    println!("cargo::rerun-if-env-changed={EMIT_DIR}");
+    if let Err(mistakes) = generate_from_environment() {
         for line in mistakes.lines() {
             println!("cargo::error={line}");
         }
@@ -26,16 +32,28 @@ pub fn run() {
     }
 }
 
-/// Where the crate is and where its generated code goes.
-fn directories() -> Result<(PathBuf, PathBuf), String> {
+fn generate_from_environment() -> Result<(), String> {
     let directory = |name: &str| {
         env::var_os(name)
             .map(PathBuf::from)
             .ok_or_else(|| format!("{name} is not set: run this from a build script"))
     };
-    println!("cargo::rerun-if-changed=models");
-    println!("cargo::rerun-if-changed=laws");
-    Ok((directory("CARGO_MANIFEST_DIR")?, directory("OUT_DIR")?))
+    let root = directory("CARGO_MANIFEST_DIR")?;
+    generate_folder(&root, &directory("OUT_DIR")?)?;
+    match env::var_os(EMIT_DIR) {
+        Some(folder) => generate_readable(&root, Path::new(&folder)),
+        None => Ok(()),
+    }
+}
+
+/// Generates the code of the crate at `root` in a folder where a person can read it; makes the folder.
+///
+/// # Errors
+/// A folder that cannot be made or written to; the mistakes of all specs.
+pub fn generate_readable(root: &Path, folder: &Path) -> Result<(), String> {
+    let name = folder.display();
+    fs::create_dir_all(folder).map_err(|e| format!("{EMIT_DIR}={name}: {e}"))?;
+    generate_folder(root, folder)
 }
 
 /// Generates `out/models.rs` from the `models/` and `laws/` of the crate at `root`.
@@ -61,15 +79,18 @@ pub fn generate_folder(root: &Path, out: &Path) -> Result<(), String> {
                 continue;
             }
         };
-        if let Some(other) = names.insert(name.clone(), file.clone()) {
-            let _ = writeln!(errors, "the model `{name}` stands in {other} and in {file}");
+        if let Some(namesake) = names.insert(name.clone(), file.clone()) {
+            let _ = writeln!(
+                errors,
+                "the model `{name}` stands in {namesake} and in {file}"
+            );
             continue;
         }
         let name = identifiers.module(&name);
         fs::write(out.join(format!("{name}.rs")), code).map_err(|e| e.to_string())?;
         let _ = writeln!(
             index,
-            "// Straight-line code is not judged by taste.\n#[allow(clippy::all)]\n#[doc = {title:?}]\npub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}"
+            "// Lints are for code that people write: straight-line code has thousands of names.\n#[allow(clippy::all)]\n#[doc = {title:?}]\npub mod {name} {{ include!(concat!(env!(\"OUT_DIR\"), \"/{name}.rs\")); }}"
         );
         let _ = writeln!(list, "    std::sync::Arc::new({name}::Generated::new()),");
     }
@@ -149,15 +170,15 @@ pub fn read_sources(path: &Path) -> io::Result<Sources> {
 
 /// The regular files of a folder whose names end so.
 fn files(folder: &Path, extension: &str) -> io::Result<Vec<PathBuf>> {
-    let mut found = Vec::new();
+    let mut paths = Vec::new();
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();
         if path.extension().is_some_and(|e| e == extension) && path.is_file() {
-            found.push(path);
+            paths.push(path);
         }
     }
-    found.sort();
-    Ok(found)
+    paths.sort();
+    Ok(paths)
 }
 
 fn read(path: &Path, root: &Path) -> io::Result<SourceFile> {

@@ -1,6 +1,7 @@
 //! What is wrong with a spec, where, what was expected, and what to try.
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 pub use landau_contract::nearest;
@@ -43,6 +44,8 @@ pub struct Diagnostic {
     pub expected: String,
     /// What to try.
     pub hint: Option<String>,
+    /// The name that stands for nothing, if that is the mistake. It is told once in a file.
+    pub unknown: Option<String>,
 }
 
 impl Diagnostic {
@@ -57,7 +60,14 @@ impl Diagnostic {
             message: shortened(&message.into()),
             expected: shortened(&expected.into()),
             hint: None,
+            unknown: None,
         }
+    }
+
+    /// Says that the mistake is a name that stands for nothing.
+    pub fn about_unknown(mut self, name: &str) -> Self {
+        self.unknown = Some(name.to_owned());
+        self
     }
 
     /// Adds a hint.
@@ -88,6 +98,7 @@ impl Diagnostics {
         let mut list: Vec<&Diagnostic> = self.list.iter().collect();
         list.sort_by_key(|d| (d.location.file, d.location.range.start));
         list.dedup_by(|a, b| a.location == b.location && a.message == b.message);
+        let list = self.one_for_each_name(list);
         let mut text = String::new();
         for diagnostic in list.iter().take(MOST_TOLD) {
             text += &self.render_one(diagnostic);
@@ -97,6 +108,45 @@ impl Diagnostics {
             text += &format!("and {} more mistakes\n\n", list.len() - MOST_TOLD);
         }
         text
+    }
+
+    /// The mistakes with one for all uses of an unknown name; it lists the lines of the further uses.
+    fn one_for_each_name(&self, list: Vec<&Diagnostic>) -> Vec<Diagnostic> {
+        let mut told: Vec<(Diagnostic, BTreeSet<usize>)> = Vec::new();
+        for diagnostic in list {
+            let same = |(first, _): &&mut (Diagnostic, BTreeSet<usize>)| {
+                diagnostic.unknown.is_some()
+                    && first.unknown == diagnostic.unknown
+                    && first.location.file == diagnostic.location.file
+            };
+            match told.iter_mut().find(same) {
+                Some((_, lines)) => {
+                    lines.insert(self.line(&diagnostic.location));
+                }
+                None => told.push((diagnostic.clone(), BTreeSet::new())),
+            }
+        }
+        let with_lines = |(mut diagnostic, mut lines): (Diagnostic, BTreeSet<usize>)| {
+            lines.remove(&self.line(&diagnostic.location));
+            if let Some(name) = diagnostic.unknown.as_ref().filter(|_| !lines.is_empty()) {
+                let plural = if lines.len() > 1 { "s" } else { "" };
+                let lines: Vec<String> = lines.iter().map(usize::to_string).collect();
+                let further = format!("`{name}` stands in line{plural} {} too", lines.join(", "));
+                diagnostic.hint = Some(match diagnostic.hint {
+                    Some(hint) => format!("{hint} ({further})"),
+                    None => further,
+                });
+            }
+            diagnostic
+        };
+        told.into_iter().map(with_lines).collect()
+    }
+
+    /// The line of a place, from 1.
+    fn line(&self, place: &Location) -> usize {
+        let text = &self.files[place.file].text;
+        let before = &text[..clamp(text, &place.range).start];
+        before.matches('\n').count() + 1
     }
 
     fn render_one(&self, diagnostic: &Diagnostic) -> String {
@@ -109,7 +159,7 @@ impl Diagnostics {
             .map_or(file.text.len(), |at| range.end + at);
         let number = file.text[..start].matches('\n').count() + 1;
         let lines = &file.text[start..end];
-        let mut own = range.start - start..range.end - start;
+        let mut span = range.start - start..range.end - start;
         let mut path = file.path.clone();
         let mut shown = lines.to_owned();
         let longest = lines.lines().map(str::len).max().unwrap_or(0);
@@ -117,10 +167,10 @@ impl Diagnostics {
             // A place of its own in the path: the excerpt would have other columns.
             let column = file.text[start..range.start].chars().count() + 1;
             path = format!("{path}:{number}:{column}, in an excerpt");
-            let window = own.start.saturating_sub(WINDOW)..own.start + WINDOW;
+            let window = span.start.saturating_sub(WINDOW)..span.start + WINDOW;
             let window = clamp(lines, &window);
             shown = lines[window.clone()].replace('\n', " ");
-            own = own.start - window.start..(own.end - window.start).min(shown.len());
+            span = span.start - window.start..(span.end - window.start).min(shown.len());
         }
         let shown: String = shown.chars().map(visible).collect();
         let snippet = Snippet::source(shown.as_str())
@@ -128,7 +178,7 @@ impl Diagnostics {
             .line_start(number)
             .annotation(
                 AnnotationKind::Primary
-                    .span(own)
+                    .span(span)
                     .label(diagnostic.expected.as_str()),
             );
         let mut group = Level::ERROR

@@ -17,12 +17,12 @@ pub fn compile(
     state: StateLayout,
     text: &str,
 ) -> Result<Expression, Diagnostics> {
-    let mut model = resolve(sources)?;
+    let (mut graph, mut model) = resolve(sources)?;
     let source = SourceFile {
         path: "expression".to_owned(),
         text: text.to_owned(),
     };
-    let id = model.read(&source, &[])?;
+    let id = model.read(&mut graph, &source, &[])?;
     let refuse = |message: &str, expected: &str| {
         let place = Location {
             file: 0,
@@ -33,7 +33,7 @@ pub fn compile(
             list: vec![Diagnostic::new(place, message, expected)],
         }
     };
-    let graph = &mut model.graph;
+    let graph = &mut graph;
     let moves = |node: &Node| matches!(node, Node::Derivative(Operator::Dt, _));
     if graph.any(id, moves) {
         let expected = "fields and their derivatives in space";

@@ -15,12 +15,9 @@ pub const ORDER: usize = 3;
 pub fn generate(
     sources: &Sources,
 ) -> Result<(derive::Derivation, kernel::ModelKernels), Diagnostics> {
-    let model = model::resolve(sources)?;
-    let mut derivation = derive::derive(model, ORDER)?;
-    let mut kernels = kernel::kernels(&mut derivation);
-    let undeclared = derivation.operators.cases.pairs();
-    let undeclared = undeclared.map(|(id, case)| (id, case.undeclared.clone()));
-    kernels.undeclared = undeclared.filter(|(_, words)| !words.is_empty()).collect();
+    let (graph, model) = model::resolve(sources)?;
+    let mut derivation = derive::derive(graph, model, ORDER)?;
+    let kernels = kernel::kernels(&mut derivation);
     Ok((derivation, kernels))
 }
 
@@ -33,7 +30,7 @@ pub fn tape(sources: &Sources) -> Result<TapeModel, Diagnostics> {
     let texts = |files: &mut dyn Iterator<Item = &SourceFile>| -> Vec<(String, String)> {
         files.map(|f| (f.path.clone(), f.text.clone())).collect()
     };
-    let own = texts(&mut derivation.model.sources.iter());
+    let spec = texts(&mut derivation.model.sources.iter());
     let laws = texts(&mut sources.laws.values());
-    Ok(TapeModel::new(kernels, own, laws, crate::BUILD))
+    Ok(TapeModel::new(kernels, spec, laws, crate::BUILD))
 }

@@ -10,9 +10,9 @@ use crate::state::StateLayout;
 /// Everything about a model that is not a kernel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Structure {
-    /// As the spec declares it.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub title: String,
     /// Highest degree of the nonlinear forms.
     pub order: usize,
@@ -22,7 +22,7 @@ pub struct Structure {
     pub coordinate: Option<String>,
     /// Profiles first, then unknown numbers.
     pub fields: Table<FieldId, FieldInfo>,
-    /// In the order of their declaration.
+    /// In the order of their declaration in the spec.
     pub parameters: Table<ParameterId, ParameterInfo>,
     /// Names of the balances, in the order of their declaration.
     pub balances: Table<BalanceId, String>,
@@ -89,9 +89,9 @@ pub struct TypicalInfo {
 /// A field of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FieldInfo {
-    /// As the spec declares it.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub doc: String,
     /// Range that a base state must keep.
     pub lower: f64,
@@ -104,9 +104,9 @@ pub struct FieldInfo {
 /// A parameter of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterInfo {
-    /// As the spec declares it.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub doc: String,
     /// Its value where none is set.
     pub default: f64,
@@ -215,7 +215,7 @@ pub struct CaseInfo {
 /// A condition of the base state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseConditionInfo {
-    /// Where it holds.
+    /// The end of the interval at which it holds.
     pub end: End,
     /// The base jets that it depends on.
     pub jets: Vec<BaseJet>,
@@ -224,7 +224,7 @@ pub struct BaseConditionInfo {
 /// A condition that the base state, being in closed form, has to meet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseCheckInfo {
-    /// Where it holds.
+    /// The end of the interval at which it holds.
     pub end: End,
     /// The condition as the spec writes it.
     pub written: String,
@@ -235,7 +235,7 @@ pub struct BaseCheckInfo {
 /// A boundary condition of the perturbation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionInfo {
-    /// Where it holds.
+    /// The end of the interval at which it holds.
     pub end: End,
     /// Monomials of degree 1, 2, 3, …
     pub monomials: Vec<Vec<Jet>>,
@@ -244,7 +244,7 @@ pub struct ConditionInfo {
 /// A boundary condition of the adjoint problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AdjointConditionInfo {
-    /// Where it holds.
+    /// The end of the interval at which it holds.
     pub end: End,
     /// Jets of the adjoint fields of balances.
     pub jets: Vec<Jet<BalanceId>>,
@@ -277,9 +277,9 @@ pub struct AmplitudeInfo {
 /// An output functional.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutputInfo {
-    /// As the spec declares it.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub doc: String,
     /// Evaluated at a place, rather than integrated.
     pub at_point: bool,

@@ -1,7 +1,8 @@
 //! The base state as a problem of its own: its balances, what they are solved for, its integrals.
 
+use super::Opener;
+use super::deriver::Deriver;
 use super::offsets::{Offsets, Orders, offsets};
-use super::{Deriver, Opener};
 use crate::diagnostic::Diagnostic;
 use crate::form::Form;
 use crate::graph::{BalanceId, FieldId, Id, Node, Table};
@@ -29,6 +30,12 @@ pub(super) struct BaseProblem {
     pub conditions: usize,
 }
 
+/// The balances that the base state has to obey, and the derivatives of the solved profiles in each.
+struct BaseRows {
+    rows: Table<BaseRowId, BaseRow>,
+    orders: Orders<BaseRowId, SolvedId>,
+}
+
 impl Deriver<'_> {
     /// Which balances, conditions and integrals the base state has to obey.
     pub(super) fn base_problem(
@@ -36,9 +43,7 @@ impl Deriver<'_> {
         balances: &Table<BalanceId, Form>,
         mistakes: &mut Vec<Diagnostic>,
     ) -> Option<BaseProblem> {
-        let model = self.model;
-        let closed = &model.base.closed;
-        let mut opener = Opener::new(&model.laws, closed, &self.uniform);
+        let closed = &self.model.base.closed;
         let mut solved: Table<SolvedId, FieldId> =
             closed.ids().filter(|&f| closed[f].is_none()).collect();
         solved.sort_by_key(|&f| self.uniform[f]);
@@ -47,29 +52,7 @@ impl Deriver<'_> {
             .copied()
             .filter(|&f| !self.uniform[f])
             .collect();
-        let mut rows = Table::default();
-        let mut orders: Orders<BaseRowId, SolvedId> = Table::default();
-        for (balance, form) in balances.pairs() {
-            let residual = form.base(self.graph);
-            if self.graph.vanishes(residual) {
-                continue;
-            }
-            let opened = opener.at_base(self.graph, residual);
-            if self.graph.vanishes(opened) {
-                continue;
-            }
-            let mut line = profiles.map(|_| None);
-            for node in self.graph.topological(&[opened]) {
-                if let Node::Base(field, order) = self.graph.node(node)
-                    && let Some(column) = profiles.position(|f| f == field)
-                {
-                    let entry: &mut Option<u8> = &mut line[column];
-                    *entry = Some(entry.unwrap_or(0).max(*order));
-                }
-            }
-            rows.push(BaseRow { balance, residual });
-            orders.push(line);
-        }
+        let BaseRows { rows, orders } = self.base_rows(balances, &profiles);
         if profiles.is_empty() {
             // A closed base that does not satisfy a balance shows when it is evaluated, where a
             // symbolic test could not see through a root.
@@ -87,50 +70,20 @@ impl Deriver<'_> {
                 conditions: 0,
             });
         }
-        let place = model.base.location.clone();
         if rows.len() != profiles.len() {
-            let names: Vec<_> = profiles
-                .iter()
-                .map(|&f| format!("`{}`", model.fields[f].name))
-                .collect();
-            let message = format!(
-                "the base state has {} unknown field(s) ({}) for {} balance(s)",
-                profiles.len(),
-                names.join(", "),
-                rows.len()
-            );
-            let held: Vec<_> = rows
-                .iter()
-                .map(|row| format!("`{}`", model.balances[row.balance].name))
-                .collect();
-            mistakes.push(
-                Diagnostic::new(
-                    place,
-                    message,
-                    "as many as there are balances that do not vanish identically",
-                )
-                .hint(format!(
-                    "balances left in the base state: {}",
-                    if held.is_empty() {
-                        "none".into()
-                    } else {
-                        held.join(", ")
-                    }
-                )),
-            );
+            mistakes.push(self.miscounted(&profiles, &rows));
             return None;
         }
         let Some(offsets) = offsets(&orders) else {
-            let message = "the base balances cannot be paired with the base fields";
             mistakes.push(Diagnostic::new(
-                place,
-                message,
+                self.model.base.location.clone(),
+                "the base balances cannot be paired with the base fields",
                 "one balance for each field that is solved for",
             ));
             return None;
         };
-        let uniform_solved = solved.len() - profiles.len();
-        let conditions = offsets.conditions + uniform_solved;
+        let numbers = solved.len() - profiles.len();
+        let conditions = offsets.conditions + numbers;
         let integrals = self.base_integrals(mistakes);
         Some(BaseProblem {
             rows,
@@ -139,6 +92,67 @@ impl Deriver<'_> {
             integrals,
             conditions,
         })
+    }
+
+    /// The balances that do not vanish identically in the base state, with their laws opaque or opened.
+    fn base_rows(
+        &mut self,
+        balances: &Table<BalanceId, Form>,
+        profiles: &Table<SolvedId, FieldId>,
+    ) -> BaseRows {
+        let model = self.model;
+        let mut opener = Opener::new(&model.laws, &model.base.closed, &self.uniform);
+        let mut rows = Table::default();
+        let mut orders: Orders<BaseRowId, SolvedId> = Table::default();
+        for (balance, form) in balances.pairs() {
+            let residual = form.base(self.graph);
+            if self.graph.vanishes(residual) {
+                continue;
+            }
+            let opened = opener.at_base(self.graph, residual);
+            if self.graph.vanishes(opened) {
+                continue;
+            }
+            let mut highest = profiles.map(|_| None);
+            for node in self.graph.topological(&[opened]) {
+                if let Node::Base(field, order) = self.graph.node(node)
+                    && let Some(column) = profiles.position(|f| f == field)
+                {
+                    let entry: &mut Option<u8> = &mut highest[column];
+                    *entry = Some(entry.unwrap_or(0).max(*order));
+                }
+            }
+            rows.push(BaseRow { balance, residual });
+            orders.push(highest);
+        }
+        BaseRows { rows, orders }
+    }
+
+    /// More or fewer balances than profiles that they are solved for.
+    fn miscounted(
+        &self,
+        profiles: &Table<SolvedId, FieldId>,
+        rows: &Table<BaseRowId, BaseRow>,
+    ) -> Diagnostic {
+        let model = self.model;
+        let fields = profiles.iter().map(|&f| model.fields[f].name.as_str());
+        let balances = rows
+            .iter()
+            .map(|row| model.balances[row.balance].name.as_str());
+        let message = format!(
+            "the base state has {} unknown field(s) ({}) for {} balance(s)",
+            profiles.len(),
+            quoted(fields),
+            rows.len()
+        );
+        let held = if rows.is_empty() {
+            "none".to_owned()
+        } else {
+            quoted(balances)
+        };
+        let expected = "as many as there are balances that do not vanish identically";
+        Diagnostic::new(model.base.location.clone(), message, expected)
+            .hint(format!("balances left in the base state: {held}"))
     }
 
     fn base_integrals(&mut self, mistakes: &mut Vec<Diagnostic>) -> Vec<(Id, Id)> {
@@ -159,4 +173,10 @@ impl Deriver<'_> {
         }
         integrals
     }
+}
+
+/// `a`, `b`, `c`
+fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let quoted: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+    quoted.join(", ")
 }

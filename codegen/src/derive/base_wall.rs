@@ -1,16 +1,16 @@
 //! What the ends of the interval say of the base state in one case.
 
-use super::Deriver;
+use super::deriver::Deriver;
 use super::wall::{BaseCondition, CaseProblem};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::graph::{FieldId, Graph, Id, Node};
-use crate::model::{Condition, End};
+use crate::model::{Closure, Condition, End};
 use std::cmp::Reverse;
 
 /// A condition that the base state, being in closed form, has to meet.
 #[derive(Clone, Debug)]
 pub struct BaseCheck {
-    /// Where it holds.
+    /// The end of the interval at which it holds.
     pub end: End,
     /// In terms of the full state.
     pub residual: Id,
@@ -49,14 +49,14 @@ pub(super) fn base_conditions(
     written_base: &[&Condition],
     mistakes: &mut Vec<Diagnostic>,
 ) -> Option<Vec<BaseCondition>> {
-    let mut found: Vec<BaseCondition> = Vec::new();
+    let mut conditions: Vec<BaseCondition> = Vec::new();
     let mut replaced: Vec<(End, FieldId)> = Vec::new();
     for condition in written_base {
         let end = condition.end;
         let residual = deriver.base_part(condition.residual, &condition.location, mistakes)?;
         if let Some(field) = solved_field(deriver, problem, residual) {
             replaced.push((end, field));
-            found.push(BaseCondition { end, residual });
+            conditions.push(BaseCondition { end, residual });
         }
     }
     for condition in written {
@@ -64,48 +64,51 @@ pub(super) fn base_conditions(
         let residual = deriver.base_part(condition.residual, &condition.location, mistakes)?;
         let field = solved_field(deriver, problem, residual);
         if field.is_some_and(|field| !replaced.contains(&(end, field))) {
-            found.push(BaseCondition { end, residual });
+            conditions.push(BaseCondition { end, residual });
         }
     }
-    let integrals = deriver.model.base.integrals.len()
-        + deriver.model.mean.iter().filter(|closure| {
-            matches!(closure, crate::model::Closure::Unknown { field, .. } if problem.solved.contains(field))
-        }).count();
-    let given = found.len()
-        + if problem.solved.is_empty() {
-            0
-        } else {
-            integrals
-        };
+    let given = conditions.len() + integral_conditions(deriver, problem);
     if given != problem.base_conditions {
-        let trouble = if given < problem.base_conditions {
-            "few"
-        } else {
-            "many"
-        };
-        let message = format!("the base state has too {trouble} conditions: {given}");
-        let expected = format!(
-            "{} conditions, at the ends and on integrals together",
-            problem.base_conditions
-        );
-        let bound = found
-            .iter()
-            .flat_map(|c| base_fields(deriver, c.residual))
-            .collect::<Vec<_>>();
-        let open = constants(deriver, problem, &bound);
-        let hint = match open.as_slice() {
-            [name, ..] if given < problem.base_conditions => format!(
-                "`{name}` enters the base balances by its derivatives alone: fix its constant by \
-                 `integral({name}) = 0`, or by its value at an end"
-            ),
-            _ => "conditions of `boundary` count where the `base` block says nothing of the field"
-                .to_owned(),
-        };
-        let place = deriver.model.base.location.clone();
-        mistakes.push(Diagnostic::new(place, message, expected).hint(hint));
+        mistakes.push(miscounted(deriver, problem, &conditions, given));
         return None;
     }
-    Some(found)
+    Some(conditions)
+}
+
+/// How many integral conditions the base state has: prescribed ones, and those of its unknown numbers.
+fn integral_conditions(deriver: &Deriver, problem: &CaseProblem) -> usize {
+    if problem.solved.is_empty() {
+        return 0;
+    }
+    let model = deriver.model;
+    let is_solved = |closure: &&Closure| matches!(closure, Closure::Unknown { field, .. } if problem.solved.contains(field));
+    model.base.integrals.len() + model.mean.iter().filter(is_solved).count()
+}
+
+/// Too few or too many conditions of the base state.
+fn miscounted(
+    deriver: &Deriver,
+    problem: &CaseProblem,
+    conditions: &[BaseCondition],
+    given: usize,
+) -> Diagnostic {
+    let needed = problem.base_conditions;
+    let trouble = if given < needed { "few" } else { "many" };
+    let message = format!("the base state has too {trouble} conditions: {given}");
+    let expected = format!("{needed} conditions, at the ends and on integrals together");
+    let bound: Vec<FieldId> = conditions
+        .iter()
+        .flat_map(|c| base_fields(deriver, c.residual))
+        .collect();
+    let hint = match constants(deriver, problem, &bound).as_slice() {
+        [name, ..] if given < needed => format!(
+            "`{name}` enters the base balances by its derivatives alone: fix its constant by \
+             `integral({name}) = 0`, or by its value at an end"
+        ),
+        _ => "conditions of `boundary` count where the `base` block says nothing of the field"
+            .to_owned(),
+    };
+    Diagnostic::new(deriver.model.base.location.clone(), message, expected).hint(hint)
 }
 
 /// Solved fields of which the base balances hold derivatives alone, and no condition of the base anything.
@@ -148,31 +151,31 @@ pub(super) fn base_checks(
         fields.dedup();
         fields
     };
-    let mut found = Vec::new();
-    let own = written_base.iter().map(|c| (c, true));
-    for (condition, own) in own.chain(written.iter().map(|c| (c, false))) {
+    let mut checks = Vec::new();
+    let of_base = written_base.iter().map(|condition| (condition, true));
+    let of_boundary = written.iter().map(|condition| (condition, false));
+    for (condition, is_of_base) in of_base.chain(of_boundary) {
         let named = fields(deriver.graph, condition.residual);
-        let replaced = written_base.iter().any(|other| {
-            other.end == condition.end
-                && fields(deriver.graph, other.residual)
+        let is_replaced = written_base.iter().any(|replacement| {
+            replacement.end == condition.end
+                && fields(deriver.graph, replacement.residual)
                     .iter()
                     .any(|f| named.contains(f))
         });
         let base = deriver.base_part(condition.residual, &condition.location, mistakes);
-        let solved = base.is_none_or(|base| {
-            base_fields(deriver, base)
-                .iter()
-                .any(|f| problem.solved.contains(f))
+        let is_solved = base.is_none_or(|base| {
+            let fields = base_fields(deriver, base);
+            fields.iter().any(|f| problem.solved.contains(f))
         });
-        if !solved && (own || !replaced) {
-            found.push(BaseCheck {
+        if !is_solved && (is_of_base || !is_replaced) {
+            checks.push(BaseCheck {
                 end: condition.end,
                 residual: condition.residual,
                 location: condition.location.clone(),
             });
         }
     }
-    found
+    checks
 }
 
 /// Fields whose base values an expression holds (through laws too).

@@ -4,10 +4,12 @@
 use super::base_wall::{BaseCheck, base_checks, base_conditions};
 use super::boundary::{Combination, Simplifier, as_condition, conjugate, demands, reduce};
 use super::closure::{self, CaseClosure};
+use super::deriver::Deriver;
+use super::redundant::redundant;
+use super::regular;
 use super::wall::{
     BaseCondition, BaseRules, CaseProblem, WallCondition, Walls, at_end, base_rules, walls,
 };
-use super::{Deriver, regular};
 use crate::diagnostic::{Diagnostic, Location};
 use crate::formula::{Arrangement, Mark, plain};
 use crate::graph::{BalanceId, Graph, Jet};
@@ -16,7 +18,7 @@ use crate::model::{Closure, Condition, End};
 /// A condition on the adjoint fields: Σ symbol · jets = 0.
 #[derive(Clone, Debug)]
 pub struct AdjointCondition {
-    /// Where it holds.
+    /// The end of the interval at which it holds.
     pub end: End,
     /// Coefficients by jet.
     pub combination: Combination<BalanceId>,
@@ -63,29 +65,9 @@ pub(super) fn derive(
     };
     let written: Vec<&Condition> = model.boundary.iter().filter(holds).collect();
     let written_base: Vec<&Condition> = model.base.conditions.iter().filter(holds).collect();
-    let mut conditions = Vec::new();
-    for condition in &written {
-        let mut form = deriver.expand(condition.residual, &condition.location, mistakes)?;
-        form.terms.remove(&Vec::new());
-        let (end, residual) = (condition.end, condition.residual);
-        let wall = WallCondition {
-            end,
-            form,
-            residual,
-        };
-        if wall.about().is_none() {
-            let message = "the condition says nothing about a field to lowest order";
-            let expected = "a condition that is linear in some field";
-            mistakes.push(Diagnostic::new(
-                condition.location.clone(),
-                message,
-                expected,
-            ));
-            return None;
-        }
-        conditions.push(wall);
-    }
+    let conditions = wall_conditions(deriver, &written, mistakes)?;
     check_count(deriver, problem.needed, &conditions, &written, mistakes)?;
+    check_independent(deriver, &conditions, &written, mistakes)?;
     let base_conditions = base_conditions(deriver, &problem, &written, &written_base, mistakes)?;
     let base_checks = base_checks(deriver, &problem, &written, &written_base, mistakes);
     let rules = base_rules(deriver.graph, &base_conditions);
@@ -106,6 +88,63 @@ pub(super) fn derive(
         conserved: closures.conserved,
         undeclared: closures.undeclared,
     })
+}
+
+/// The conditions expanded around the base state; what holds of the base state alone is left out.
+fn wall_conditions(
+    deriver: &mut Deriver,
+    written: &[&Condition],
+    mistakes: &mut Vec<Diagnostic>,
+) -> Option<Vec<WallCondition>> {
+    let mut conditions = Vec::new();
+    for condition in written {
+        let mut form = deriver.expand(condition.residual, &condition.location, mistakes)?;
+        form.terms.remove(&Vec::new());
+        let (end, residual) = (condition.end, condition.residual);
+        let wall = WallCondition {
+            end,
+            form,
+            residual,
+        };
+        if wall.about().is_none() {
+            let message = "the condition says nothing about a field to lowest order";
+            let expected = "a condition that is linear in some field";
+            mistakes.push(Diagnostic::new(
+                condition.location.clone(),
+                message,
+                expected,
+            ));
+            return None;
+        }
+        conditions.push(wall);
+    }
+    Some(conditions)
+}
+
+/// Refuses a condition that follows from the ones before it.
+fn check_independent(
+    deriver: &mut Deriver,
+    conditions: &[WallCondition],
+    written: &[&Condition],
+    mistakes: &mut Vec<Diagnostic>,
+) -> Option<()> {
+    let Some(surplus) = redundant(deriver, conditions) else {
+        return Some(());
+    };
+    let condition = written[surplus];
+    let interval = deriver.model.interval.as_ref();
+    let place = interval.map_or("", |interval| interval.written(condition.end));
+    let message = format!(
+        "the conditions before this one at {} = {place} say the same already",
+        deriver.model.coordinate()
+    );
+    let expected = "a condition that does not follow from the ones before it";
+    mistakes.push(Diagnostic::new(
+        condition.location.clone(),
+        message,
+        expected,
+    ));
+    None
 }
 
 fn check_count(
@@ -221,24 +260,24 @@ fn solved(
     rows: &[(End, Vec<Combination<BalanceId>>)],
     rules: &BaseRules,
 ) -> Result<Vec<AdjointCondition>, String> {
-    let mut found = Vec::new();
-    for (end, own) in rows {
+    let mut conditions = Vec::new();
+    for (end, demanded) in rows {
         let place = deriver.place(*end);
         let mut simplify = |graph: &mut Graph, id| at_end(graph, place, *end, rules, id);
         let mut simplifier = Simplifier {
             at_end: &mut simplify,
         };
-        let reduced = reduce(deriver.graph, own.clone(), &mut simplifier)
+        let reduced = reduce(deriver.graph, demanded.clone(), &mut simplifier)
             .map_err(|_| "a condition on the adjoint field holds x-derivatives alone".to_owned())?;
         for (jet, rule) in reduced.rules {
-            found.push(AdjointCondition {
+            conditions.push(AdjointCondition {
                 end: *end,
                 combination: as_condition(deriver.graph, jet, &rule),
                 balance: jet.of,
             });
         }
     }
-    Ok(found)
+    Ok(conditions)
 }
 
 fn singular_end(deriver: &Deriver, end: End) -> String {

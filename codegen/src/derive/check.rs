@@ -1,6 +1,6 @@
 //! What the form of a model must have before operators make sense of it.
 
-use super::Deriver;
+use super::deriver::Deriver;
 use super::linear::DirectTerm;
 use crate::diagnostic::{Diagnostic, Location};
 use crate::form::Form;
@@ -40,6 +40,7 @@ impl Deriver<'_> {
         forms: &Table<BalanceId, Form>,
         mistakes: &mut Vec<Diagnostic>,
     ) {
+        let coordinate = self.model.coordinate();
         for (form, balance) in forms.iter().zip(&self.model.balances) {
             let jets = || form.terms.keys().flatten();
             let place = balance.location.clone();
@@ -56,12 +57,16 @@ impl Deriver<'_> {
             } else if let Some(jet) = jets().find(|j| j.y > 2) {
                 let name = &self.model.fields[jet.of].name;
                 let message = format!(
-                    "`{}` holds a {}-fold y-derivative of `{name}`",
+                    "`{}` holds a {}-fold {coordinate}-derivative of `{name}`",
                     balance.name, jet.y
                 );
                 mistakes.push(
-                    Diagnostic::new(place, message, "y-derivatives of second order at most")
-                        .hint("introduce an auxiliary field for the second derivative"),
+                    Diagnostic::new(
+                        place,
+                        message,
+                        format!("{coordinate}-derivatives of second order at most"),
+                    )
+                    .hint("introduce an auxiliary field for the second derivative"),
                 );
             } else if self.model.interval.is_none() && jets().any(|j| j.y > 0) {
                 let message = format!("`{}` holds a cross-stream derivative", balance.name);

@@ -5,17 +5,17 @@
 //! mass (continuity) leave components of ℓ open; where zero does not do for them, the claim is handed on, and
 //! the collocated problem decides. Beyond first order the multiplier decides, which has to vanish.
 
+use super::Case;
 use super::density::Density;
+use super::deriver::Deriver;
+use super::gauge::{check_declared, gauge};
 use super::invariant::{Proof, end_rules};
 use super::linear::DirectTerm;
-use super::mean::{MeanWalls, carried, conserved, mean_walls, multiplier};
+use super::mean::{carried, conserved, mean_walls, multiplier};
 use super::wall::{BaseRules, CaseProblem, reduced};
-use super::{Case, Deriver};
 use crate::diagnostic::Diagnostic;
-use crate::form::Form;
-use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Node, Rational, Table};
-use crate::model::{Balance, Closure, End};
-use num_traits::One;
+use crate::graph::{BalanceId, FieldId, Id, Table};
+use crate::model::{Balance, Closure, End, Integral};
 
 /// A bordering of the problem at k = 0. Integrals keep the value that they have in the base state.
 #[derive(Clone, Debug)]
@@ -36,7 +36,7 @@ pub enum CaseClosure {
     },
     /// The constant of a field is arbitrary: ∫ field = 0.
     Gauge {
-        /// Which field.
+        /// The field whose constant is arbitrary.
         field: FieldId,
         /// Balances that the multiplier enters, with weights.
         column: Vec<(BalanceId, Id)>,
@@ -44,14 +44,14 @@ pub enum CaseClosure {
     /// The constant of a field with a time derivative is arbitrary, and may drift: ∫ field = 0, and the
     /// multiplier, which enters where the time derivative does, is the rate of the drift.
     Drift {
-        /// Which field.
+        /// The field whose constant is arbitrary.
         field: FieldId,
         /// Balances that the multiplier enters, with weights.
         column: Vec<(BalanceId, Id)>,
     },
     /// The number `field` is unknown: ∫ density is kept.
     Unknown {
-        /// Which field.
+        /// The number, a field without a profile.
         field: FieldId,
         /// What is integrated.
         density: Density,
@@ -107,31 +107,7 @@ pub(super) fn derive(
         rules,
         ends: ends.into(),
     };
-    let mut closures = Closures {
-        list: Vec::new(),
-        conserved: Vec::new(),
-        undeclared: Vec::new(),
-        candidates: 0,
-    };
-    // An integral that fixes the base is a candidate for a conserved one.
-    let candidates = model
-        .base
-        .integrals
-        .iter()
-        .map(|i| (i.integrand, &i.location, None));
-    let declared = model.mean.iter().enumerate();
-    let declared = declared.filter_map(|(index, closure)| match closure {
-        Closure::Conserved {
-            integrand,
-            location,
-        } => Some((*integrand, location, Some(index))),
-        _ => None,
-    });
-    for (integrand, location, index) in candidates.chain(declared) {
-        if let Some(density) = deriver.density(integrand, location, mistakes) {
-            closures.conserve(deriver, &proof, density, index);
-        }
-    }
+    let mut closures = Closures::conserved(deriver, &proof, mistakes);
     for closure in &model.mean {
         match closure {
             Closure::Conserved { .. } => {}
@@ -142,31 +118,70 @@ pub(super) fn derive(
                 }
             },
             Closure::Unknown { field, integral } => {
-                let place = &integral.location;
-                let density = deriver.density(integral.integrand, place, mistakes);
-                match density {
-                    Some(density) if density.linear.is_empty() => {
-                        let name = &model.fields[*field].name;
-                        let message = format!(
-                            "the condition of `{name}` has no linear part at the base state: to first order it says nothing"
-                        );
-                        let expected = "an integrand whose linear part has a mean";
-                        mistakes.push(Diagnostic::new(place.clone(), message, expected));
-                    }
-                    Some(density) => closures.list.push(CaseClosure::Unknown {
-                        field: *field,
-                        density,
-                    }),
-                    None => {}
-                }
+                closures
+                    .list
+                    .extend(unknown(deriver, *field, integral, mistakes));
             }
         }
     }
+    check_declared(deriver, problem, &walls, &closures.list, mistakes);
     closures.undeclared = deriver.aside(|deriver| proof.undeclared(deriver, &closures.list));
     closures
 }
 
+/// The closure of an unknown number by its integral condition.
+fn unknown(
+    deriver: &mut Deriver,
+    field: FieldId,
+    integral: &Integral,
+    mistakes: &mut Vec<Diagnostic>,
+) -> Option<CaseClosure> {
+    let place = &integral.location;
+    let density = deriver.density(integral.integrand, place, mistakes)?;
+    if density.linear.is_empty() {
+        let name = &deriver.model.fields[field].name;
+        let message = format!(
+            "the condition of `{name}` has no linear part at the base state: to first order it says nothing"
+        );
+        let expected = "an integrand whose linear part has a mean";
+        mistakes.push(Diagnostic::new(place.clone(), message, expected));
+        return None;
+    }
+    Some(CaseClosure::Unknown { field, density })
+}
+
 impl Closures {
+    /// The conserved integrals: those that the block `mean` declares, and those that fix the base state.
+    fn conserved(deriver: &mut Deriver, proof: &Proof, mistakes: &mut Vec<Diagnostic>) -> Self {
+        let model = deriver.model;
+        let mut closures = Closures {
+            list: Vec::new(),
+            conserved: Vec::new(),
+            undeclared: Vec::new(),
+            candidates: 0,
+        };
+        // An integral that fixes the base is a candidate for a conserved one.
+        let candidates = model
+            .base
+            .integrals
+            .iter()
+            .map(|i| (i.integrand, &i.location, None));
+        let declared = model.mean.iter().enumerate();
+        let declared = declared.filter_map(|(index, closure)| match closure {
+            Closure::Conserved {
+                integrand,
+                location,
+            } => Some((*integrand, location, Some(index))),
+            _ => None,
+        });
+        for (integrand, location, index) in candidates.chain(declared) {
+            if let Some(density) = deriver.density(integrand, location, mistakes) {
+                closures.conserve(deriver, proof, density, index);
+            }
+        }
+        closures
+    }
+
     /// Takes in an integral if it is conserved, or if it stands in the block `mean` (at `declared`) and no proof can
     /// decide.
     fn conserve(
@@ -215,12 +230,16 @@ impl Closures {
     /// keeps what is declared. Two that are declared have to agree.
     fn unite(&mut self, position: usize, density: Density, declared: Option<usize>) {
         let is_candidate = position < self.candidates;
-        if let CaseClosure::Conserved { density: own, .. }
-        | CaseClosure::Claimed { density: own, .. } = &mut self.list[position]
+        if let CaseClosure::Conserved {
+            density: present, ..
+        }
+        | CaseClosure::Claimed {
+            density: present, ..
+        } = &mut self.list[position]
             && let Some(index) = declared
-            && (is_candidate || own.integrand == density.integrand)
+            && (is_candidate || present.integrand == density.integrand)
         {
-            *own = density;
+            *present = density;
             self.conserved.push(index);
         }
     }
@@ -247,106 +266,4 @@ pub(super) fn drop_refuted(cases: &mut [Case]) {
 fn is_undecided(linear: &[DirectTerm], balances: &Table<BalanceId, Balance>) -> bool {
     let massless = |row| !linear.iter().any(|t| t.row == row && t.jet.t > 0);
     balances.ids().any(massless) || linear.iter().any(|t| t.jet.t > 0 && t.jet.y > 0)
-}
-
-/// The closure of a field of which only derivatives matter, or why it is none: message and expectation.
-fn gauge(
-    deriver: &mut Deriver,
-    problem: &CaseProblem,
-    walls: &MeanWalls,
-    field: FieldId,
-) -> Result<CaseClosure, (String, &'static str)> {
-    let model = deriver.model;
-    let name = &model.fields[field].name;
-    let valued = |form: &Form| {
-        form.terms
-            .keys()
-            .flatten()
-            .any(|jet| *jet == Jet::value(field))
-    };
-    let balances = problem.balances.iter().zip(&model.balances);
-    let holder = balances
-        .filter(|(form, _)| valued(form))
-        .map(|(_, balance)| format!("`{}`", balance.name))
-        .next();
-    let wall = || problem.walls.iter().any(|w| valued(&w.form));
-    let holder = holder.or_else(|| wall().then(|| "a boundary condition".to_owned()));
-    if let Some(holder) = holder {
-        return Err((
-            format!("`{name}` is no gauge: its value enters {holder}"),
-            "a field of which only derivatives enter the balances",
-        ));
-    }
-    let mass: Vec<(BalanceId, Id)> = problem
-        .linear
-        .iter()
-        .filter(|t| {
-            t.jet
-                == Jet {
-                    t: 1,
-                    ..Jet::value(field)
-                }
-        })
-        .map(|t| (t.row, t.coefficient))
-        .collect();
-    if !mass.is_empty() {
-        return Ok(CaseClosure::Drift {
-            field,
-            column: mass,
-        });
-    }
-    let paired = problem.pairing.position(|f| *f == field);
-    let others = model.balances.ids().filter(|row| Some(*row) != paired);
-    for row in paired.into_iter().chain(others) {
-        for weight in null_candidates(deriver, problem, row) {
-            let column = vec![(row, weight)];
-            let is_null = deriver.aside(|deriver| walls.carries(deriver, problem, &column, &[]));
-            if is_null && conserved(deriver, problem, walls, &column, &[]) {
-                return Ok(CaseClosure::Gauge { field, column });
-            }
-        }
-    }
-    let balance = paired.map_or("no balance", |row| model.balances[row].name.as_str());
-    Err((
-        format!("the constant of `{name}` is not free: `{balance}` does not integrate to zero"),
-        "a gauge whose balance is a divergence, without flux through the ends",
-    ))
-}
-
-/// Weights under which a balance may be a divergence: its divisor times powers of what its coefficients are
-/// divided by, such as r for ∂r u + u/r.
-fn null_candidates(deriver: &mut Deriver, problem: &CaseProblem, row: BalanceId) -> Vec<Id> {
-    let graph = &mut *deriver.graph;
-    let mut bases: Vec<Id> = Vec::new();
-    let coefficients = problem
-        .linear
-        .iter()
-        .filter(|t| t.row == row && t.jet.t == 0);
-    for term in coefficients {
-        for node in graph.topological(&[term.coefficient]) {
-            match graph.node(node) {
-                Node::Product(factors) => bases.extend(factors.iter().map(|(base, _)| *base)),
-                Node::Base(..) | Node::BaseLaw(_) | Node::Coordinate => bases.push(node),
-                _ => {}
-            }
-        }
-    }
-    let varies = |graph: &Graph, id| {
-        graph.any(id, |n| {
-            matches!(n, Node::Base(..) | Node::BaseLaw(_) | Node::Coordinate)
-        })
-    };
-    bases.sort_unstable();
-    bases.dedup();
-    bases.retain(|&base| varies(graph, base));
-    let divisor = problem.divisors[row];
-    let mut candidates = vec![divisor];
-    for base in bases {
-        for exponent in [1, -1, 2, -2, 3, -3] {
-            let exponent = Rational::from_integer(exponent.into());
-            let parts = [(divisor, Rational::one()), (base, exponent)];
-            candidates.push(graph.product(parts));
-        }
-    }
-    candidates
 }

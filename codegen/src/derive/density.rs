@@ -1,6 +1,7 @@
 //! What an integral condition integrates: its linear part, its expansion, and the density itself.
 
-use super::{Deriver, Opener};
+use super::Opener;
+use super::deriver::Deriver;
 use crate::diagnostic::{Diagnostic, Location};
 use crate::form::Form;
 use crate::graph::{Graph, Id, Jet, Node};

@@ -68,8 +68,8 @@ impl<'a> Expander<'a> {
 
     /// The expansion of an expression of the full state.
     pub fn expand(&mut self, graph: &mut Graph, id: Id) -> Expanded {
-        if let Some(known) = self.memo.get(&id) {
-            return Ok(known.clone());
+        if let Some(form) = self.memo.get(&id) {
+            return Ok(form.clone());
         }
         let form = self.expand_node(graph, id)?;
         self.memo.insert(id, form.clone());
@@ -116,27 +116,7 @@ impl<'a> Expander<'a> {
                     branches.iter().map(|&b| self.expand(graph, b)).collect();
                 Ok(select(graph, switch, &forms?))
             }
-            Node::Derivative(operator, argument) => {
-                let form = self.expand(graph, argument)?;
-                let order = |j: &Jet| j.t.max(j.x).max(j.absx).max(j.y);
-                if form
-                    .terms
-                    .keys()
-                    .flatten()
-                    .any(|jet| order(jet) >= HIGHEST_DERIVATIVE)
-                {
-                    return Err(Inexpandable {
-                        reason: format!(
-                            "it holds a derivative beyond the order {HIGHEST_DERIVATIVE}"
-                        ),
-                        remedy: None,
-                    });
-                }
-                if operator == Operator::AbsDx && form.highest_degree() > 1 {
-                    return Err("|∂x| of a nonlinear expression".into());
-                }
-                Ok(self.without_uniform(form.differentiate(graph, operator)))
-            }
+            Node::Derivative(operator, argument) => self.derivative(graph, operator, argument),
             Node::Jet(jet) => {
                 let base = self.base_value(graph, jet);
                 let mut form = Form::constant(graph, base);
@@ -147,6 +127,23 @@ impl<'a> Expander<'a> {
             Node::StateLaw(atom) => Ok(self.law_series(graph, &atom)),
             _ => Ok(Form::constant(graph, id)),
         }
+    }
+
+    /// ∂x, ∂y, ∂t or |∂x| of an expression.
+    fn derivative(&mut self, graph: &mut Graph, operator: Operator, argument: Id) -> Expanded {
+        let form = self.expand(graph, argument)?;
+        let order = |j: &Jet| j.t.max(j.x).max(j.absx).max(j.y);
+        let mut jets = form.terms.keys().flatten();
+        if jets.any(|jet| order(jet) >= HIGHEST_DERIVATIVE) {
+            return Err(Inexpandable {
+                reason: format!("it holds a derivative beyond the order {HIGHEST_DERIVATIVE}"),
+                remedy: None,
+            });
+        }
+        if operator == Operator::AbsDx && form.highest_degree() > 1 {
+            return Err("|∂x| of a nonlinear expression".into());
+        }
+        Ok(self.without_uniform(form.differentiate(graph, operator)))
     }
 
     /// The derivative of a base field.
@@ -181,15 +178,15 @@ impl<'a> Expander<'a> {
         let mut binomial = Rational::one();
         for m in 0..=self.order {
             let index = Rational::from_integer((m as i64).into());
-            let rest = exponent - &index;
-            let coefficient = if binomial.is_zero() || (graph.is_zero(value) && !rest.is_zero()) {
+            let lower = exponent - &index;
+            let coefficient = if binomial.is_zero() || (graph.is_zero(value) && !lower.is_zero()) {
                 graph.zero()
             } else {
-                let power = graph.pow(value, rest.clone());
+                let power = graph.pow(value, lower.clone());
                 graph.scale(power, binomial.clone())
             };
             taylor.push(coefficient);
-            binomial = binomial * rest / (index + Rational::one());
+            binomial = binomial * lower / (index + Rational::one());
         }
         Ok(form.compose(graph, &taylor))
     }

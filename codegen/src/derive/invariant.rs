@@ -5,9 +5,9 @@
 //! boundary conditions. The multiplier may hold fields beyond zeroth order (u · mass + momentum): Σ ℓ_i P_i + Σ x q'_j P_k
 //! with numbers x that the second degree determines.
 
-use super::Deriver;
 use super::boundary::Reduced;
 use super::closure::CaseClosure;
+use super::deriver::Deriver;
 use super::mean::MeanWalls;
 use super::wall::{BaseRules, CaseProblem, at_end};
 use crate::form::Form;
@@ -68,26 +68,27 @@ impl Proof<'_> {
     /// The integrals that the case keeps beside `declared`, as a spec would name them.
     pub fn undeclared(&self, deriver: &mut Deriver, declared: &[CaseClosure]) -> Vec<String> {
         let mut words = Vec::new();
-        let mut found: Vec<Vec<(Jet, Id)>> = Vec::new();
+        let mut densities: Vec<Vec<(Jet, Id)>> = Vec::new();
         let columns = self.columns(deriver);
         for column in self.null(deriver, &columns) {
             let linear = self.walls.density(deriver, self.problem, &column);
             let known = declared.iter().filter_map(CaseClosure::density);
             let known: Vec<Vec<(Jet, Id)>> = known
                 .map(|density| density.linear.clone())
-                .chain(found.iter().cloned())
+                .chain(densities.iter().cloned())
                 .collect();
             if linear.is_empty() || depends(deriver, &linear, &known) {
                 continue;
             }
             if let Ok(Some(sum)) = self.kept(deriver, &column) {
                 let moving = |m: &Vec<Jet>| m.len() > 1 && m.iter().any(|jet| jet.t > 0);
-                let more = match sum.terms.keys().any(moving) {
-                    true => " to first order, with products beyond it",
-                    false => "",
+                let more = if sum.terms.keys().any(moving) {
+                    " to first order, with products beyond it"
+                } else {
+                    ""
                 };
                 words.push(format!("integral({}){more}", written(deriver, &linear)));
-                found.push(linear);
+                densities.push(linear);
             }
         }
         words
@@ -116,7 +117,7 @@ impl Proof<'_> {
             .iter()
             .map(|&column| self.walls.image(deriver, self.problem, &[column]))
             .collect();
-        let mut found = Vec::new();
+        let mut sums = Vec::new();
         for last in 0..columns.len() {
             let mut system = LinearSystem::new(deriver.graph, last);
             for field in deriver.model.profiles() {
@@ -136,16 +137,16 @@ impl Proof<'_> {
                 is_constant &= is_number(deriver, factor);
                 let (row, weight) = columns[c];
                 let part = deriver.graph.mul(factor, weight);
-                match sum.iter_mut().find(|(other, _)| *other == row) {
+                match sum.iter_mut().find(|(balance, _)| *balance == row) {
                     Some((_, total)) => *total = deriver.graph.add(*total, part),
                     None => sum.push((row, part)),
                 }
             }
             if is_constant && self.walls.vanish_for(deriver, &sum) {
-                found.push(sum);
+                sums.push(sum);
             }
         }
-        found
+        sums
     }
 
     /// Σ ℓ_i P_i with corrections, if it is a divergence whose flux through the ends vanishes; nothing where it is none.
@@ -426,9 +427,13 @@ fn flux(graph: &mut Graph, form: &Form) -> Form {
         for (position, jet) in monomial.iter().enumerate() {
             let mut others = monomial.clone();
             others.remove(position);
-            let mut rest = Form::default();
-            rest.terms.insert(others, coefficient);
-            let mut rest = derived(graph, rest, &[(Operator::Dx, jet.x), (Operator::Dt, jet.t)]);
+            let mut remainder = Form::default();
+            remainder.terms.insert(others, coefficient);
+            let mut remainder = derived(
+                graph,
+                remainder,
+                &[(Operator::Dx, jet.x), (Operator::Dt, jet.t)],
+            );
             let mut is_negative = (jet.x + jet.t) % 2 == 1;
             for l in 0..jet.y {
                 let one = graph.one();
@@ -438,14 +443,14 @@ fn flux(graph: &mut Graph, form: &Form) -> Form {
                     ..Jet::value(jet.of)
                 };
                 factor.terms.insert(vec![value], one);
-                let product = rest.multiply(graph, &factor, usize::MAX);
+                let product = remainder.multiply(graph, &factor, usize::MAX);
                 let sign = if is_negative {
                     -share.clone()
                 } else {
                     share.clone()
                 };
                 total.add(graph, &product, &sign);
-                rest = rest.differentiate(graph, Operator::Dy);
+                remainder = remainder.differentiate(graph, Operator::Dy);
                 is_negative = !is_negative;
             }
         }

@@ -1,11 +1,11 @@
 //! The problem at k = 0 by itself: null functions ℓ(y) of L† and what the two ends leave of them.
 
-use super::Deriver;
 use super::boundary::{
     BoundaryForm, Combination, Reduced, Simplifier, at_zero_wavenumber, boundary_form, demands,
     reduce, split,
 };
 use super::closure::CaseClosure;
+use super::deriver::Deriver;
 use super::linear::{AdjointTerm, DirectTerm};
 use super::wall::{BaseRules, CaseProblem, at_end};
 use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, LinearSystem, Rational, Table, Variable};
@@ -72,12 +72,12 @@ pub(super) fn conserved(
     problem: &CaseProblem,
     walls: &MeanWalls,
     column: &[(BalanceId, Id)],
-    known: &[CaseClosure],
+    declared: &[CaseClosure],
 ) -> bool {
     let image = image(deriver, problem.adjoint, column, 0);
     let null = image.iter().all(|&id| deriver.vanishes_opened(id));
     if !null
-        && !known
+        && !declared
             .iter()
             .any(|closure| is_multiple(deriver.graph, &image, closure))
     {
@@ -242,10 +242,10 @@ impl MeanWalls {
     ) -> bool {
         let image = image(deriver, problem.adjoint, column, 1);
         let matches = image.pairs().all(|(field, &total)| {
-            let own = density.iter().find(|(jet, _)| *jet == Jet::value(field));
-            let expected = own.map_or_else(|| deriver.graph.zero(), |(_, weight)| *weight);
-            let rest = deriver.graph.sub(total, expected);
-            deriver.vanishes_opened(rest)
+            let term = density.iter().find(|(jet, _)| *jet == Jet::value(field));
+            let expected = term.map_or_else(|| deriver.graph.zero(), |(_, weight)| *weight);
+            let difference = deriver.graph.sub(total, expected);
+            deriver.vanishes_opened(difference)
         });
         matches && self.vanish(deriver, &self.mass, column)
     }
@@ -266,13 +266,13 @@ fn is_multiple(graph: &mut Graph, image: &Table<FieldId, Id>, closure: &CaseClos
         return false;
     }
     image.ids().all(|field| {
-        let own = density.iter().find(|(jet, _)| jet.of == field);
-        let expected = match own {
+        let term = density.iter().find(|(jet, _)| jet.of == field);
+        let expected = match term {
             Some((_, weight)) => graph.mul(factor, *weight),
             None => graph.zero(),
         };
-        let rest = graph.sub(image[field], expected);
-        graph.vanishes(rest)
+        let difference = graph.sub(image[field], expected);
+        graph.vanishes(difference)
     })
 }
 

@@ -144,7 +144,7 @@ fn replace_derivatives(graph: &mut Graph, id: Id, done: &HashMap<Id, Id>) -> Id 
 
 /// |∂x| of a linear expression: each jet gains the operator, what has no jet goes.
 fn abs_dx(graph: &mut Graph, id: Id) -> Id {
-    let rest = graph.substitute(id, &mut |graph, node| match node {
+    let without_jets = graph.substitute(id, &mut |graph, node| match node {
         Node::Jet(_) => Some(graph.zero()),
         _ => None,
     });
@@ -152,7 +152,7 @@ fn abs_dx(graph: &mut Graph, id: Id) -> Id {
         Node::Jet(jet) => Some(graph.jet(jet.derived(Operator::AbsDx))),
         _ => None,
     });
-    graph.sub(raised, rest)
+    graph.sub(raised, without_jets)
 }
 
 /// For each law, which fields it depends on.

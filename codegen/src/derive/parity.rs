@@ -47,14 +47,14 @@ fn solve(mut system: Vec<Vec<bool>>, unknowns: usize) -> Option<Vec<bool>> {
     let mut rank = 0;
     // Later unknowns (balances) are eliminated first, so that free choices fall on fields.
     for column in (0..unknowns).rev() {
-        let Some(found) = (rank..system.len()).find(|&r| system[r][column]) else {
+        let Some(pivot) = (rank..system.len()).find(|&r| system[r][column]) else {
             continue;
         };
-        system.swap(rank, found);
+        system.swap(rank, pivot);
         let row = system[rank].clone();
-        for (r, other) in system.iter_mut().enumerate() {
-            if r != rank && other[column] {
-                for (bit, by) in other.iter_mut().zip(&row) {
+        for (r, line) in system.iter_mut().enumerate() {
+            if r != rank && line[column] {
+                for (bit, by) in line.iter_mut().zip(&row) {
                     *bit ^= by;
                 }
             }

@@ -4,8 +4,8 @@
 //! adjoint conditions. What stands in their place is regularity: the leading term of each adjoint balance
 //! in powers of the distance from the end. (r Y')' + r g Y = 0 asks for Y' = 0 at r = 0.
 
-use super::Deriver;
 use super::boundary::{Combination, split};
+use super::deriver::Deriver;
 use super::linear::AdjointTerm;
 use super::wall::{BaseRules, at_end};
 use crate::graph::{BalanceId, FieldId, Id, Variable};
@@ -26,13 +26,13 @@ pub(super) fn conditions(
     for term in adjoint {
         rows.entry(term.row).or_default().push(*term);
     }
-    let mut found = Vec::new();
+    let mut list = Vec::new();
     for terms in rows.into_values() {
-        found.extend(leading(deriver, &terms, end, rules));
+        list.extend(leading(deriver, &terms, end, rules));
     }
     let order = |c: &Combination<BalanceId>| c.keys().map(|jet| jet.y).max();
-    found.sort_by_key(|c| std::cmp::Reverse(order(c)));
-    found
+    list.sort_by_key(|c| std::cmp::Reverse(order(c)));
+    list
 }
 
 /// The terms of lowest power in the distance from the end, where that is no power of all regular balances.

@@ -1,9 +1,9 @@
 //! What the two ends make of the operators: base conditions as rules, direct conditions reduced.
 
-use super::Deriver;
 use super::boundary::{
     BoundaryForm, Combination, Reduced, Simplifier, boundary_form, reduce, split,
 };
+use super::deriver::Deriver;
 use super::linear::{AdjointTerm, DirectTerm};
 use crate::form::Form;
 use crate::graph::{BalanceId, FieldId, Graph, Id, Node, ParameterId, Rational, Table, Variable};
@@ -13,7 +13,7 @@ use num_traits::One;
 /// A condition on the perturbation: B(X⁰ + X') − B(X⁰) = 0.
 #[derive(Clone, Debug)]
 pub struct WallCondition {
-    /// Where it holds.
+    /// The end of the interval at which it holds.
     pub end: End,
     /// Terms of degree 1 and higher.
     pub form: Form,
@@ -34,7 +34,7 @@ impl WallCondition {
 /// A condition on the base state.
 #[derive(Clone, Debug)]
 pub struct BaseCondition {
-    /// Where it holds.
+    /// The end of the interval at which it holds.
     pub end: End,
     /// Vanishes at that end; laws opaque.
     pub residual: Id,
@@ -96,13 +96,13 @@ pub(super) fn base_rules(graph: &mut Graph, conditions: &[BaseCondition]) -> Bas
         // residual = slope · atom + rest
         let atom = graph.base(field, order);
         let product = graph.mul(slope, atom);
-        let rest = graph.sub(condition.residual, product);
-        let rest = if graph.vanishes(rest) {
+        let remainder = graph.sub(condition.residual, product);
+        let remainder = if graph.vanishes(remainder) {
             graph.zero()
         } else {
-            rest
+            remainder
         };
-        let solution = graph.product([(rest, Rational::one()), (slope, -Rational::one())]);
+        let solution = graph.product([(remainder, Rational::one()), (slope, -Rational::one())]);
         let solution = graph.neg(solution);
         rules.push((condition.end, (field, order), solution));
     }
@@ -159,24 +159,36 @@ pub(super) fn reduced(
 ) -> Result<Vec<(End, Reduced<FieldId>)>, String> {
     let mut reduced = Vec::new();
     for end in End::BOTH {
-        let place = deriver.place(end);
-        let rows = conditions.iter().filter(|c| c.end == end).map(|condition| {
-            let mut row = Combination::new();
-            for (monomial, &coefficient) in &condition.form.degree(1).terms {
-                let (jet, symbol) = split(monomial[0], coefficient);
-                row.entry(jet).or_default().extend(symbol);
-            }
-            row
-        });
-        let rows: Vec<_> = rows.collect();
-        let mut simplify = |graph: &mut Graph, id| at_end(graph, place, end, rules, id);
-        let mut simplifier = Simplifier {
-            at_end: &mut simplify,
-        };
-        let solved = reduce(deriver.graph, rows, &mut simplifier).map_err(|_| {
-            "the boundary conditions cannot be solved for derivatives without x in them".to_owned()
-        })?;
+        let rows = conditions.iter().filter(|c| c.end == end).map(linear_row);
+        let solved = solved_at(deriver, end, rows.collect(), rules)?;
         reduced.push((end, solved));
     }
     Ok(reduced)
+}
+
+/// The linear part of a condition.
+pub(super) fn linear_row(condition: &WallCondition) -> Combination<FieldId> {
+    let mut row = Combination::new();
+    for (monomial, &coefficient) in &condition.form.degree(1).terms {
+        let (jet, symbol) = split(monomial[0], coefficient);
+        row.entry(jet).or_default().extend(symbol);
+    }
+    row
+}
+
+/// Conditions of one end solved for derivatives without ∂x, or why they cannot be.
+pub(super) fn solved_at(
+    deriver: &mut Deriver,
+    end: End,
+    rows: Vec<Combination<FieldId>>,
+    rules: &BaseRules,
+) -> Result<Reduced<FieldId>, String> {
+    let place = deriver.place(end);
+    let mut simplify = |graph: &mut Graph, id| at_end(graph, place, end, rules, id);
+    let mut simplifier = Simplifier {
+        at_end: &mut simplify,
+    };
+    reduce(deriver.graph, rows, &mut simplifier).map_err(|_| {
+        "the boundary conditions cannot be solved for derivatives without x in them".to_owned()
+    })
 }

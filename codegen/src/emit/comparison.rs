@@ -16,7 +16,7 @@ pub fn sides(
     let jets = factors(&letters, subject, &difference.monomial);
     [difference.printed, difference.derived].map(|coefficient| match coefficient {
         None => Formula::zero(),
-        Some(id) => letters.scaled(&derivation.model.graph, id, jets.clone()),
+        Some(id) => letters.scaled(&derivation.graph, id, jets.clone()),
     })
 }
 
@@ -26,7 +26,7 @@ pub fn derived(derivation: &Derivation, subject: &Subject, comparison: &Comparis
         &derivation.model,
         derivation.model.letters(Arrangement::Grouped),
     );
-    let graph = &model.graph;
+    let graph = &derivation.graph;
     let side = match subject {
         Subject::Balance(_) | Subject::Law(_) | Subject::Base(_) => {
             letters.formula(graph, comparison.subject)
@@ -47,9 +47,10 @@ pub fn derived(derivation: &Derivation, subject: &Subject, comparison: &Comparis
             formula::over_common_denominator(graph, &letters, &terms.collect::<Vec<_>>())
         }
     };
-    match subject.is_equation() {
-        true => Formula::equation(side, Formula::zero()),
-        false => side,
+    if subject.is_equation() {
+        Formula::equation(side, Formula::zero())
+    } else {
+        side
     }
 }
 

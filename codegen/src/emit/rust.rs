@@ -2,6 +2,7 @@
 //!
 //! Every kernel is a function of straight-line code; the equations stand in its documentation.
 
+use super::comment::{Comments, comment, comments, registers_of, with_comments};
 use super::literal::Literal;
 use super::name::Identifiers;
 use super::text;
@@ -15,67 +16,25 @@ use quote::{format_ident, quote};
 /// files of the crate.
 pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
     let structure = model.structure.literal();
-    let mut functions = TokenStream::new();
-    let mut evaluate = TokenStream::new();
-    for (id, kernel) in &model.kernels {
-        let name = kernel_name(*id);
-        let pattern = kernel_pattern(*id);
-        functions.extend(real_function(&name, kernel));
-        evaluate.extend(quote!(s::KernelId::#pattern => #name(point, out),));
-    }
-    let mut identifiers = Identifiers::default();
-    let balances = &model.structure.balances;
-    let identifiers = balances.map(|name| identifiers.balance(name));
-    let mut forms = TokenStream::new();
-    for (index, rows) in model.forms.iter().enumerate() {
-        let degree = index + 2;
-        for (row, kernel) in rows.pairs() {
-            let Some(kernel) = kernel else { continue };
-            let balance = &balances[row];
-            let name = format_ident!("n{}_{}", degree, identifiers[row]);
-            let equation = text::nonlinear_row(derivation, degree, row);
-            functions.extend(form_function(&name, kernel, degree, balance, &equation));
-            let arguments = (0..degree).map(proc_macro2::Literal::usize_unsuffixed);
-            let row = row.literal();
-            forms.extend(quote!((#degree, #row) => #name(c, #(x[#arguments]),*),));
-        }
-    }
-    // A linear model reads neither coefficients nor jets.
-    let unread = forms.is_empty().then(|| quote!(let _ = (c, x);));
-    let mut residuals = TokenStream::new();
-    for (id, kernel) in &model.residuals {
-        let (name, pattern) = residual_name(*id);
-        functions.extend(residual_program(&name, kernel));
-        residuals.extend(quote!(s::ResidualId::#pattern => Some(&#name),));
-    }
+    let kernels = kernels(derivation, model);
+    let forms = forms(derivation, model);
+    let residuals = residuals(model);
+    let functions = [&kernels, &forms, &residuals].map(|part| &part.functions);
+    let [kernel_arms, form_arms, residual_arms] =
+        [&kernels, &forms, &residuals].map(|part| &part.arms);
     let undeclared = undeclared(&model.undeclared);
     let sources = derivation.model.sources.iter().map(|file| {
         let (path, text) = (&file.path, &file.text);
         quote!((#path, #text))
     });
     let build = crate::BUILD;
+    let generated = generated();
     let code = quote! {
         use landau_contract as s;
         use s::C64;
         use std::borrow::Cow;
 
-        /// The generated operators, for the solver.
-        pub struct Generated {
-            structure: s::Structure,
-        }
-
-        impl Generated {
-            /// The model, ready to be solved.
-            pub fn new() -> Self {
-                Generated { structure: structure() }
-            }
-        }
-
-        impl Default for Generated {
-            fn default() -> Self {
-                Self::new()
-            }
-        }
+        #generated
 
         impl s::Model for Generated {
             fn structure(&self) -> &s::Structure {
@@ -96,22 +55,18 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
 
             fn evaluate(&self, kernel: s::KernelId, point: &[f64], out: &mut [f64]) {
                 match kernel {
-                    #evaluate
-                    _ => out.fill(0.0),
+                    #kernel_arms
+                    absent => panic!("this model has no kernel {absent:?}"),
                 }
             }
 
             fn form(&self, degree: usize, row: s::BalanceId, c: &[f64], x: &[&[C64]]) -> C64 {
-                #unread
-                match (degree, row) {
-                    #forms
-                    _ => C64::new(0.0, 0.0),
-                }
+                #form_arms
             }
 
             fn residual(&self, residual: s::ResidualId) -> Option<&s::Kernel> {
                 match residual {
-                    #residuals
+                    #residual_arms
                     _ => None,
                 }
             }
@@ -126,9 +81,100 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
             #structure
         }
 
-        #functions
+        #(#functions)*
     };
-    pretty(code)
+    with_comments(&pretty(code))
+}
+
+/// The type that the module defines.
+fn generated() -> TokenStream {
+    quote! {
+        /// The generated operators, for the solver.
+        pub struct Generated {
+            structure: s::Structure,
+        }
+
+        impl Generated {
+            /// The model, ready to be solved.
+            pub fn new() -> Self {
+                Generated { structure: structure() }
+            }
+        }
+
+        impl Default for Generated {
+            fn default() -> Self {
+                Self::new()
+            }
+        }
+    }
+}
+
+/// Functions or constants, and the arms of the `match` that picks one of them.
+struct Dispatch {
+    functions: TokenStream,
+    arms: TokenStream,
+}
+
+/// The kernels over the point state.
+fn kernels(derivation: &Derivation, model: &ModelKernels) -> Dispatch {
+    let (mut functions, mut arms) = (TokenStream::new(), TokenStream::new());
+    for (id, kernel) in &model.kernels {
+        let (name, pattern) = (kernel_name(*id), kernel_pattern(*id));
+        let comments = comments(derivation, model, *id);
+        functions.extend(real_function(&name, kernel, &comments));
+        arms.extend(quote!(s::KernelId::#pattern => #name(point, out),));
+    }
+    Dispatch { functions, arms }
+}
+
+/// N2, N3, … of each balance. A balance without terms of a degree is zero by an arm of its own.
+fn forms(derivation: &Derivation, model: &ModelKernels) -> Dispatch {
+    let (mut functions, mut arms) = (TokenStream::new(), TokenStream::new());
+    let mut identifiers = Identifiers::default();
+    let balances = &model.structure.balances;
+    let identifiers = balances.map(|name| identifiers.balance(name));
+    for (index, rows) in model.forms.iter().enumerate() {
+        let degree = index + 2;
+        for (row, kernel) in rows.pairs() {
+            let place = row.literal();
+            let Some(kernel) = kernel else {
+                arms.extend(quote!((#degree, #place) => C64::new(0.0, 0.0),));
+                continue;
+            };
+            let name = format_ident!("n{}_{}", degree, identifiers[row]);
+            let equation = text::nonlinear_row(derivation, degree, row);
+            functions.extend(form_function(
+                &name,
+                kernel,
+                degree,
+                &balances[row],
+                &equation,
+            ));
+            let arguments = (0..degree).map(proc_macro2::Literal::usize_unsuffixed);
+            arms.extend(quote!((#degree, #place) => #name(c, #(x[#arguments]),*),));
+        }
+    }
+    // A linear model reads neither coefficients nor jets.
+    let unread = functions.is_empty().then(|| quote!(let _ = (c, x);));
+    let arms = quote! {
+        #unread
+        match (degree, row) {
+            #arms
+            absent => panic!("this model has no nonlinear terms {absent:?}"),
+        }
+    };
+    Dispatch { functions, arms }
+}
+
+/// The residuals of the full state.
+fn residuals(model: &ModelKernels) -> Dispatch {
+    let (mut functions, mut arms) = (TokenStream::new(), TokenStream::new());
+    for (id, kernel) in &model.residuals {
+        let (name, pattern) = residual_name(*id);
+        functions.extend(residual_program(&name, kernel));
+        arms.extend(quote!(s::ResidualId::#pattern => Some(&#name),));
+    }
+    Dispatch { functions, arms }
 }
 
 /// The method that names what is kept and not declared; nothing where nothing is.
@@ -215,9 +261,9 @@ fn residual_name(id: ResidualId) -> (Ident, TokenStream) {
 }
 
 /// `fn name(p, out)`: `p` is the point state.
-fn real_function(name: &Ident, kernel: &Kernel) -> TokenStream {
-    let body = body(kernel);
-    let outputs = outputs(kernel);
+fn real_function(name: &Ident, kernel: &Kernel, comments: &Comments) -> TokenStream {
+    let body = body(kernel, &registers_of(kernel, comments));
+    let outputs = outputs(kernel, comments);
     let doc = counts(kernel);
     let unused = unused_inputs(kernel);
     quote! {
@@ -238,7 +284,7 @@ fn form_function(
     balance: &str,
     equation: &str,
 ) -> TokenStream {
-    let body = body(kernel);
+    let body = body(kernel, &Comments::new());
     let result = register(kernel.outputs[0]);
     let arguments = kernel.inputs[1..]
         .iter()
@@ -299,9 +345,10 @@ fn register(index: usize) -> Ident {
     format_ident!("t{index}")
 }
 
-fn outputs(kernel: &Kernel) -> TokenStream {
+fn outputs(kernel: &Kernel, comments: &Comments) -> TokenStream {
     let mut tokens = TokenStream::new();
     for (index, &value) in kernel.outputs.iter().enumerate() {
+        tokens.extend(comments.get(&index).map(|words| comment(words)));
         let index = proc_macro2::Literal::usize_unsuffixed(index);
         let value = register(value);
         tokens.extend(quote!(out[#index] = #value;));
@@ -311,10 +358,11 @@ fn outputs(kernel: &Kernel) -> TokenStream {
 
 /// Real registers are `f64`; the others are of the kernel's number type, and mixed operations keep
 /// the number type on the left.
-fn body(kernel: &Kernel) -> TokenStream {
+fn body(kernel: &Kernel, comments: &Comments) -> TokenStream {
     let mut tokens = TokenStream::new();
     let real = kernel.real();
     for (index, operation) in kernel.operations.iter().enumerate() {
+        tokens.extend(comments.get(&index).map(|words| comment(words)));
         let name = register(index);
         let value = expression(kernel, &real, operation);
         let annotation = matches!(operation, Operation::Constant(_)).then(|| quote!(: f64));

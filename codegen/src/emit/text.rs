@@ -143,13 +143,13 @@ impl<'a> Writer<'a> {
     }
 
     fn formula(&self, id: Id) -> Formula {
-        self.letters.formula(&self.derivation.model.graph, id)
+        self.letters.formula(&self.derivation.graph, id)
     }
 
     /// coefficient · Π what
     fn scaled(&self, coefficient: Id, what: Vec<Formula>) -> Formula {
         self.letters
-            .scaled(&self.derivation.model.graph, coefficient, what)
+            .scaled(&self.derivation.graph, coefficient, what)
     }
 
     /// y = H, by the end's own name where it has one.
@@ -158,9 +158,10 @@ impl<'a> Writer<'a> {
         let Some(interval) = &model.interval else {
             return Formula::zero();
         };
-        let place = match interval.named(end) {
-            true => Formula::Letter(interval.written(end).to_owned()),
-            false => self.formula(interval.end(end)),
+        let place = if interval.named(end) {
+            Formula::Letter(interval.written(end).to_owned())
+        } else {
+            self.formula(interval.end(end))
         };
         Formula::equation(Formula::Letter(interval.name.clone()), place)
     }
@@ -198,7 +199,7 @@ impl<'a> Writer<'a> {
                         .map(|(id, operator)| self.scaled(id, operator)),
                 ),
                 Arrangement::Grouped => {
-                    let graph = &self.derivation.model.graph;
+                    let graph = &self.derivation.graph;
                     formula::over_common_denominator(graph, &self.letters, &parts)
                 }
             };
@@ -436,7 +437,7 @@ impl<'a> Writer<'a> {
     fn row(&self, form: &Form, divisor: Id) -> Formula {
         match self.letters.arrangement {
             Arrangement::Grouped if !form.terms.is_empty() => {
-                let graph = &self.derivation.model.graph;
+                let graph = &self.derivation.graph;
                 Formula::Lines(formula::grouped(graph, &self.letters, form, divisor))
             }
             _ => self.form(form),

@@ -100,7 +100,7 @@ pub(super) fn subject(
         }
     };
     let form = Form { terms: form };
-    Ok(expression(&mut derivation.model.graph, &form))
+    Ok(expression(&mut derivation.graph, &form))
 }
 
 /// An adjoint jet is of a balance; here it is named by the field that its balance goes with.
@@ -115,8 +115,8 @@ fn named<I: Position>(
     name: &str,
     names: &Table<I, String>,
 ) -> Found<I> {
-    let found = names.position(|n| n == name);
-    found.ok_or_else(|| absent(formula, what, name, names))
+    let position = names.position(|n| n == name);
+    position.ok_or_else(|| absent(formula, what, name, names))
 }
 
 /// Σ coefficient · Π jets.
@@ -145,8 +145,8 @@ fn case<'d>(derivation: &'d Derivation, formula: &Formula, setting: &Setting) ->
         set.unwrap_or(derivation.model.parameters[switch].default as usize)
     };
     let wanted: Vec<usize> = operators.switches.iter().map(|&s| chosen(s)).collect();
-    let found = operators.cases.iter().find(|c| c.choices == wanted);
-    found.ok_or_else(|| absent(formula, "case of", "these switches", &[]))
+    let case = operators.cases.iter().find(|c| c.choices == wanted);
+    case.ok_or_else(|| absent(formula, "case of", "these switches", &[]))
 }
 
 /// The parameters that a formula is set in.
@@ -175,21 +175,24 @@ fn number(derivation: &mut Derivation, text: &str) -> Option<Rational> {
         path: String::new(),
         text: text.to_owned(),
     };
-    let id = derivation.model.read(&source, &[]).ok()?;
-    derivation.model.graph.as_number(id).cloned()
+    let id = derivation
+        .model
+        .read(&mut derivation.graph, &source, &[])
+        .ok()?;
+    derivation.graph.as_number(id).cloned()
 }
 
 /// A subject that the model does not have.
-fn absent(formula: &Formula, what: &str, name: &str, known: &[String]) -> Diagnostics {
+fn absent(formula: &Formula, what: &str, name: &str, candidates: &[String]) -> Diagnostics {
     let place = Location {
         file: 0,
         range: 0..0,
     };
-    let expected = match known {
+    let expected = match candidates {
         [] => "another subject".to_owned(),
         names => format!("one of {}", names.join(", ")),
     };
-    let near = nearest(name, known.iter().map(String::as_str));
+    let near = nearest(name, candidates.iter().map(String::as_str));
     let message = format!("this formula is about a {what} `{name}`, which there is none of");
     let mistake = Diagnostic::new(place, message, expected)
         .maybe_hint(near.map(|n| format!("did you mean `{n}`?")));

@@ -137,18 +137,18 @@ pub fn compare(
         // A law is one term, whatever it is a function of.
         Subject::Law(_) => {
             let id = terms::open_law(derivation, id);
-            let id = terms::settle(&mut derivation.model.graph, id, &setting);
-            Form::constant(&derivation.model.graph, id)
+            let id = terms::settle(&mut derivation.graph, id, &setting);
+            Form::constant(&derivation.graph, id)
         }
         _ => {
             let id = terms::carry_out(derivation, id);
-            let id = terms::settle(&mut derivation.model.graph, id, &setting);
-            Form::polynomial(&mut derivation.model.graph, id)
+            let id = terms::settle(&mut derivation.graph, id, &setting);
+            Form::polynomial(&mut derivation.graph, id)
         }
     });
     if formula.subject.is_equation() {
-        let factor = relative_factor(&mut derivation.model.graph, &sides[0], &sides[1]);
-        sides[0] = sides[0].times(&mut derivation.model.graph, factor);
+        let factor = relative_factor(&mut derivation.graph, &sides[0], &sides[1]);
+        sides[0] = sides[0].times(&mut derivation.graph, factor);
     }
     let (terms, differences) = differences(derivation, &sides[0], &sides[1]);
     let [_, derived] = sides;
@@ -216,16 +216,20 @@ fn printed(
     abbreviations: &[(String, String)],
     source: &SourceFile,
 ) -> Result<Id, Diagnostics> {
-    let mut known = Vec::new();
+    let mut definitions = Vec::new();
     for (name, text) in abbreviations {
         let source = SourceFile {
             path: format!("abbreviation {name}"),
             text: text.clone(),
         };
-        let id = derivation.model.read(&source, &known)?;
-        known.push((name.clone(), id));
+        let id = derivation
+            .model
+            .read(&mut derivation.graph, &source, &definitions)?;
+        definitions.push((name.clone(), id));
     }
-    derivation.model.read(source, &known)
+    derivation
+        .model
+        .read(&mut derivation.graph, source, &definitions)
 }
 
 /// What the printed side has to be multiplied with: the coefficients of the leading term that both
@@ -274,19 +278,19 @@ fn differences(
 ) -> (usize, Vec<Difference>) {
     let monomials: BTreeSet<&Monomial> = printed.terms.keys().chain(derived.terms.keys()).collect();
     let mut differences = Vec::new();
-    let (mut terms, zero) = (0, derivation.model.graph.zero());
+    let (mut terms, zero) = (0, derivation.graph.zero());
     for monomial in monomials {
         let [left, right] = [printed, derived].map(|side| {
             let coefficient = side.terms.get(monomial).copied()?;
             let opened = terms::open_chain(derivation, coefficient);
-            (!derivation.model.graph.vanishes(opened)).then_some((coefficient, opened))
+            (!derivation.graph.vanishes(opened)).then_some((coefficient, opened))
         });
         if left.is_none() && right.is_none() {
             continue;
         }
         terms += 1;
         let opened = |side: Option<(Id, Id)>| side.map_or(zero, |(_, opened)| opened);
-        let graph = &mut derivation.model.graph;
+        let graph = &mut derivation.graph;
         let rest = graph.sub(opened(left), opened(right));
         if !graph.vanishes(rest) {
             let mut shown =

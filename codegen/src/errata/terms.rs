@@ -22,24 +22,24 @@ pub(super) fn settle(graph: &mut Graph, id: Id, setting: &Setting) -> Id {
 }
 
 fn value(setting: &Setting, parameter: ParameterId) -> Option<&Value> {
-    let found = setting.iter().find(|(index, _)| *index == parameter);
-    found.map(|(_, value)| value)
+    let entry = setting.iter().find(|(index, _)| *index == parameter);
+    entry.map(|(_, value)| value)
 }
 
 /// The formula of a law, opened down to fields and parameters.
 pub(super) fn open_law(derivation: &mut Derivation, id: Id) -> Id {
-    let model = &mut derivation.model;
+    let model = &derivation.model;
     let uniform = model.fields.map(|f| f.uniform);
-    Opener::new(&model.laws, &model.base.closed, &uniform).at_state(&mut model.graph, id)
+    Opener::new(&model.laws, &model.base.closed, &uniform).at_state(&mut derivation.graph, id)
 }
 
 /// Derivatives carried out, base values that are known put in, laws that do not depend on a field
 /// not differentiated by it.
 pub(super) fn carry_out(derivation: &mut Derivation, id: Id) -> Id {
-    let model = &mut derivation.model;
+    let model = &derivation.model;
     let (laws, closed) = (&model.laws, &model.base.closed);
     let uniform = model.fields.map(|f| f.uniform);
-    let graph = &mut model.graph;
+    let graph = &mut derivation.graph;
     let id = derive::carry_out(graph, id, &uniform);
     let depends = derive::dependence(graph, laws, uniform.len());
     let explicit = explicit(graph, laws);
@@ -76,16 +76,16 @@ fn explicit(graph: &Graph, laws: &Table<LawId, Law>) -> Table<LawId, bool> {
 
 /// Total derivatives of laws along the base state by the chain rule: p⁰_y = p⁰_n n⁰_y + p⁰_T T⁰_y.
 pub(super) fn open_chain(derivation: &mut Derivation, id: Id) -> Id {
-    let model = &mut derivation.model;
-    let graph = &mut model.graph;
+    let model = &derivation.model;
+    let graph = &mut derivation.graph;
     let depends = derive::dependence(graph, &model.laws, model.fields.len());
     let explicit = explicit(graph, &model.laws);
     let closed = &model.base.closed;
     let mut opened: HashMap<LawAtom, Id> = HashMap::new();
     graph.substitute(id, &mut |graph, node| match node {
         Node::BaseLaw(atom) if atom.y > 0 && !explicit[atom.law] => {
-            if let Some(&known) = opened.get(atom) {
-                return Some(known);
+            if let Some(&value) = opened.get(atom) {
+                return Some(value);
             }
             let start = LawAtom {
                 y: 0,

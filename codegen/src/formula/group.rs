@@ -222,9 +222,10 @@ fn by_expansion(divided: bool, pieces: Vec<Piece>) -> Vec<Group> {
         inner.sort_by(|a, b| a.of.jets.cmp(&b.of.jets).then(a.of.law.cmp(&b.of.law)));
         let largest = inner.iter().map(|term| term.number.abs()).max();
         let size = largest.unwrap_or_else(Rational::one);
-        let scale = match inner[0].number.is_negative() {
-            true => -size,
-            false => size,
+        let scale = if inner[0].number.is_negative() {
+            -size
+        } else {
+            size
         };
         inner.iter_mut().for_each(|term| term.number /= &scale);
         keyed_by_inner.push((
@@ -266,9 +267,10 @@ impl Writer<'_> {
         };
         // The sign of the first stands before brackets.
         let bracketed = group.outer.len() > 1 && (group.divided || !group.expansions.is_empty());
-        let sign = match bracketed {
-            true => first.number.signum(),
-            false => Rational::one(),
+        let sign = if bracketed {
+            first.number.signum()
+        } else {
+            Rational::one()
         };
         let common = match group
             .outer
@@ -332,12 +334,13 @@ impl Writer<'_> {
             rest = Formula::product(others.iter().cloned());
         }
         let below = self.letters.formula(self.graph, divisor);
-        let front = match above.is_integer() {
-            true => Formula::fraction(Formula::Number(above), below),
-            false => Formula::product([
+        let front = if above.is_integer() {
+            Formula::fraction(Formula::Number(above), below)
+        } else {
+            Formula::product([
                 Formula::fraction(Formula::one(), below),
                 Formula::Number(above),
-            ]),
+            ])
         };
         (front.signed(number.is_negative() != sign), rest)
     }

@@ -82,17 +82,19 @@ pub fn latex(formula: &Formula) -> String {
 /// In brackets where it holds less tightly than its surroundings.
 fn at(formula: &Formula, context: Binding) -> String {
     let text = latex(formula);
-    match formula.binding() < context {
-        true => bracketed(&text),
-        false => text,
+    if formula.binding() < context {
+        bracketed(&text)
+    } else {
+        text
     }
 }
 
 /// Round brackets; square ones around round ones and around operators.
 fn bracketed(inside: &str) -> String {
-    match inside.contains("\\left(") || inside.contains("\\partial") {
-        true => format!("\\left[{inside}\\right]"),
-        false => format!("\\left({inside}\\right)"),
+    if inside.contains("\\left(") || inside.contains("\\partial") {
+        format!("\\left[{inside}\\right]")
+    } else {
+        format!("\\left({inside}\\right)")
     }
 }
 
@@ -102,9 +104,10 @@ fn product(factors: &[Formula]) -> String {
     for (index, factor) in factors.iter().enumerate() {
         let long = |f: &Formula| matches!(f, Formula::Letter(name) | Formula::Symbol { name, .. } if is_word(name));
         if index > 0 {
-            text += match long(factor) || long(&factors[index - 1]) {
-                true => "\\, ",
-                false => " ",
+            text += if long(factor) || long(&factors[index - 1]) {
+                "\\, "
+            } else {
+                " "
             };
         }
         text += &at(factor, Binding::Product);
@@ -205,9 +208,10 @@ fn greek_command(letter: char) -> Option<String> {
 }
 
 fn number(value: &Rational) -> String {
-    match value.is_integer() {
-        true => value.to_string(),
-        false => format!("\\tfrac{{{}}}{{{}}}", value.numer(), value.denom()),
+    if value.is_integer() {
+        value.to_string()
+    } else {
+        format!("\\tfrac{{{}}}{{{}}}", value.numer(), value.denom())
     }
 }
 

@@ -162,9 +162,10 @@ impl Letters {
                 |(base, e): &(Id, Rational)| Formula::power(self.formula(graph, *base), &e.abs());
             Formula::product(side.map(power))
         };
-        match factors.iter().any(|(_, e)| e.is_negative()) {
-            false => side(false),
-            true => Formula::fraction(side(false), side(true)),
+        if factors.iter().any(|(_, e)| e.is_negative()) {
+            Formula::fraction(side(false), side(true))
+        } else {
+            side(false)
         }
     }
 

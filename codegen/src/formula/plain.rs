@@ -63,9 +63,10 @@ pub fn plain(formula: &Formula) -> String {
 /// In brackets where it holds less tightly than its surroundings.
 fn at(formula: &Formula, context: Binding) -> String {
     let text = plain(formula);
-    match formula.binding() < context {
-        true => format!("({text})"),
-        false => text,
+    if formula.binding() < context {
+        format!("({text})")
+    } else {
+        text
     }
 }
 

@@ -204,6 +204,11 @@ impl Graph {
             }
         }
         self.work += work;
+        self.collected_product(number, factors)
+    }
+
+    /// number · Π base^exponent, each base once and none of them a number or a pole.
+    fn collected_product(&mut self, number: Rational, mut factors: BTreeMap<Id, Rational>) -> Id {
         // 0 · ln 0, ln 0 / ln 0
         let is_lost = |(&base, exponent): (&Id, &Rational)| {
             (number.is_zero() || exponent.is_zero()) && self.is_undefined(base)

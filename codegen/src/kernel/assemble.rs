@@ -2,39 +2,34 @@
 
 use super::ModelKernels;
 use super::polarise::form_tables;
-use crate::derive::{BaseCheck, CaseClosure, Derivation, Opener, base_value};
+use super::program::{operations, residual_jets};
+use super::structure::{Parts, offsets};
+use crate::derive::{BaseCheck, Case, CaseClosure, Derivation, Opener, base_value};
 use crate::graph::{Graph, Id, Jet, Node, Variable};
 use crate::model::Amplitude;
 use landau_contract::*;
 use std::collections::BTreeSet;
 
+/// Derivatives of the base fields that the point state always holds: those of the balances.
+const LEAST_BASE_ORDER: usize = 2;
+
 /// Opens the laws and lowers every operator.
 pub fn kernels(derivation: &mut Derivation) -> ModelKernels {
-    let Derivation { model, operators } = derivation;
-    let mut graph = std::mem::take(&mut model.graph);
+    let Derivation {
+        graph,
+        model,
+        operators,
+    } = derivation;
     let uniform = model.fields.map(|f| f.uniform);
-    let opener = Opener::new(&model.laws, &model.base.closed, &uniform);
-    let mut assembler = Assembler {
-        graph: &mut graph,
-        opener,
+    let assembler = Assembler {
+        graph,
+        opener: Opener::new(&model.laws, &model.base.closed, &uniform),
         model,
         operators,
         expressions: Vec::new(),
-        base_order: 2,
+        base_order: LEAST_BASE_ORDER,
     };
-    let structure = assembler.structure();
-    let result = assembler.lower(structure);
-    derivation.model.graph = graph;
-    result
-}
-
-fn offsets<Row: Clone, Column: Clone>(
-    offsets: &crate::derive::Offsets<Row, Column>,
-) -> OffsetsInfo<Row, Column> {
-    OffsetsInfo {
-        rows: offsets.rows.clone(),
-        columns: offsets.columns.clone(),
-    }
+    assembler.run()
 }
 
 pub(super) struct Assembler<'a> {
@@ -89,112 +84,48 @@ impl Assembler<'_> {
         (jets, Linearised { value, slopes })
     }
 
-    fn structure(&mut self) -> Structure {
-        let (model, operators) = (self.model, self.operators);
-        let ends = match &model.interval {
+    fn run(mut self) -> ModelKernels {
+        let ends = match &self.model.interval {
             Some(interval) => vec![interval.lower, interval.upper],
             None => vec![self.graph.zero(), self.graph.one()],
         };
         self.kernel(KernelId::Interval, ends);
         let base = self.base();
-        let linear = operators
-            .linear
-            .iter()
-            .map(|t| TermInfo {
-                row: t.row,
-                jet: t.jet,
-            })
-            .collect();
-        let adjoint = operators
-            .adjoint
-            .iter()
-            .map(|t| TermInfo {
-                row: t.row,
-                jet: t.jet,
-            })
-            .collect();
+        let operators = self.operators;
         self.opened(KernelId::Divisors, operators.divisors.to_vec());
-        self.opened(
-            KernelId::Linear,
-            operators.linear.iter().map(|t| t.coefficient).collect(),
-        );
-        self.opened(
-            KernelId::Adjoint,
-            operators.adjoint.iter().map(|t| t.coefficient).collect(),
-        );
-        let (form_jets, coefficients) = self.nonlinear();
+        let linear = operators.linear.iter().map(|t| t.coefficient);
+        self.opened(KernelId::Linear, linear.collect());
+        let adjoint = operators.adjoint.iter().map(|t| t.coefficient);
+        self.opened(KernelId::Adjoint, adjoint.collect());
+        let (form_jets, form_coefficients) = self.nonlinear();
         let cases = operators.cases.ids().map(|case| self.case(case)).collect();
         let amplitude = self.amplitude();
         let outputs = self.outputs();
-        let automatic = |id: ParameterId| model.base.automatic.iter().any(|(p, _)| *p == id);
-        Structure {
-            name: model.name.clone(),
-            title: model.title.clone(),
-            order: operators.order,
-            periodic: model.periodic.clone(),
-            coordinate: model.interval.as_ref().map(|i| i.name.clone()),
-            fields: model
-                .fields
-                .iter()
-                .map(|f| FieldInfo {
-                    name: f.name.clone(),
-                    doc: f.doc.clone(),
-                    lower: f.lower,
-                    upper: f.upper,
-                    uniform: f.uniform,
-                })
-                .collect(),
-            parameters: model
-                .parameters
-                .pairs()
-                .map(|(id, p)| ParameterInfo {
-                    name: p.name.clone(),
-                    doc: p.doc.clone(),
-                    default: p.default,
-                    lower: p.lower,
-                    upper: p.upper,
-                    choices: p.choices.clone(),
-                    whole: p.whole,
-                    automatic: automatic(id),
-                })
-                .collect(),
-            balances: model.balances.map(|b| b.name.clone()),
-            base_order: self.base_order,
+        self.closed();
+        let residual_outputs = self.residuals();
+        let residual_jets = residual_jets(self.graph, &residual_outputs);
+        let forms = self.forms();
+        let (kernels, residuals) = self.lowered(&residual_outputs, &residual_jets);
+        let structure = self.structure(Parts {
             base,
-            offsets: offsets(&operators.offsets),
-            adjoint_offsets: offsets(&operators.adjoint_offsets),
-            parity: operators.parity.as_ref().map(|p| ParityInfo {
-                fields: p.fields.clone(),
-                rows: p.rows.clone(),
-            }),
-            linear,
-            adjoint,
             form_jets,
-            form_coefficients: coefficients,
-            forms: operators
-                .nonlinear
-                .iter()
-                .map(|rows| rows.map(|form| !form.terms.is_empty()))
-                .collect(),
-            residual_jets: Vec::new(),
-            switches: operators.switches.clone(),
+            form_coefficients,
             cases,
             amplitude,
             outputs,
-            typical: model.typical.map(|typical| TypicalInfo {
-                k: typical.k,
-                near: typical.near.map_or(Vec::new(), |near| near.to_vec()),
-            }),
-            lines: LinesInfo {
-                coordinate: model
-                    .interval
-                    .as_ref()
-                    .map_or(0, |i| model.line(&i.location)),
-                base: model.line(&model.base.location),
-                fields: model.fields.map(|f| model.line(&f.location)),
-                balances: model.balances.map(|b| model.line(&b.location)),
-            },
-            operations: Vec::new(),
+            residual_jets,
+            operations: operations(&kernels, &forms),
+        });
+        let undeclared = operators.cases.pairs();
+        let undeclared = undeclared.filter(|(_, case)| !case.undeclared.is_empty());
+        ModelKernels {
+            structure,
+            kernels,
+            forms,
+            residuals,
+            undeclared: undeclared
+                .map(|(id, case)| (id, case.undeclared.clone()))
+                .collect(),
         }
     }
 
@@ -259,44 +190,67 @@ impl Assembler<'_> {
 
     fn case(&mut self, id: CaseId) -> CaseInfo {
         let case = &self.operators.cases[id];
-        let mut outputs = Vec::new();
-        let mut base_conditions = Vec::new();
+        let model = self.model;
+        let base_check = |check: &BaseCheck| BaseCheckInfo {
+            end: check.end,
+            written: model.written(&check.location),
+            line: model.line(&check.location),
+        };
+        CaseInfo {
+            choices: case.choices.clone(),
+            base_conditions: self.base_conditions(id, case),
+            base_checks: case.base_checks.iter().map(base_check).collect(),
+            conditions: self.conditions(id, case),
+            adjoint: self.adjoint_conditions(id, case),
+            closures: self.closures(id, case),
+        }
+    }
+
+    fn base_conditions(&mut self, id: CaseId, case: &Case) -> Vec<BaseConditionInfo> {
+        let (mut infos, mut outputs) = (Vec::new(), Vec::new());
         for condition in &case.base_conditions {
             let (jets, linearised) = self.with_jacobian(condition.residual);
-            base_conditions.push(BaseConditionInfo {
-                end: condition.end,
-                jets,
-            });
+            let end = condition.end;
+            infos.push(BaseConditionInfo { end, jets });
             outputs.push(linearised);
         }
         let outputs = layout::write_linearised(outputs);
         self.kernel(KernelId::BaseConditions(id), outputs);
+        infos
+    }
 
-        let mut coefficients = Vec::new();
-        let mut conditions = Vec::new();
+    fn conditions(&mut self, id: CaseId, case: &Case) -> Vec<ConditionInfo> {
+        let (mut infos, mut coefficients) = (Vec::new(), Vec::new());
         for condition in &case.conditions {
             coefficients.push(condition.form.terms.values().copied().collect());
             let monomials = condition.form.terms.keys().cloned().collect();
-            conditions.push(ConditionInfo {
+            infos.push(ConditionInfo {
                 end: condition.end,
                 monomials,
             });
         }
         let coefficients = layout::write_conditions(coefficients);
         self.opened(KernelId::Conditions(id), coefficients);
+        infos
+    }
 
+    fn adjoint_conditions(
+        &mut self,
+        id: CaseId,
+        case: &Case,
+    ) -> Result<Vec<AdjointConditionInfo>, String> {
         let mut coefficients = Vec::new();
-        let adjoint = case.adjoint.clone().map(|list| {
+        let infos = case.adjoint.clone().map(|conditions| {
             let mut infos = Vec::new();
-            for condition in list {
-                let (mut jets, mut own) = (Vec::new(), Vec::new());
+            for condition in conditions {
+                let (mut jets, mut weights) = (Vec::new(), Vec::new());
                 for (jet, symbol) in condition.combination {
-                    for ((x, absx), id) in symbol {
+                    for ((x, absx), weight) in symbol {
                         jets.push(Jet { x, absx, ..jet });
-                        own.push(id);
+                        weights.push(weight);
                     }
                 }
-                coefficients.push(own);
+                coefficients.push(weights);
                 infos.push(AdjointConditionInfo {
                     end: condition.end,
                     jets,
@@ -306,9 +260,11 @@ impl Assembler<'_> {
         });
         let coefficients = layout::write_conditions(coefficients);
         self.opened(KernelId::AdjointConditions(id), coefficients);
+        infos
+    }
 
-        let mut coefficients = Vec::new();
-        let mut closures = Vec::new();
+    fn closures(&mut self, id: CaseId, case: &Case) -> Vec<ClosureInfo> {
+        let (mut infos, mut coefficients) = (Vec::new(), Vec::new());
         for closure in &case.closures {
             let one = self.graph.one();
             let mean = |field: FieldId| vec![(Jet::value(field), one)];
@@ -325,18 +281,16 @@ impl Assembler<'_> {
                 CaseClosure::Drift { field, column } => {
                     (ClosureKind::Drift, Some(field), mean(field), column)
                 }
-                CaseClosure::Unknown { field, density } => (
-                    ClosureKind::Unknown,
-                    Some(field),
-                    density.linear,
-                    Vec::new(),
-                ),
+                CaseClosure::Unknown { field, density } => {
+                    let column = Vec::new();
+                    (ClosureKind::Unknown, Some(field), density.linear, column)
+                }
             };
             coefficients.push(layout::ClosureWeights {
                 density: density.iter().map(|(_, id)| *id).collect(),
                 column: column.iter().map(|(_, id)| *id).collect(),
             });
-            closures.push(ClosureInfo {
+            infos.push(ClosureInfo {
                 kind,
                 field,
                 density: density.into_iter().map(|(jet, _)| jet).collect(),
@@ -345,20 +299,7 @@ impl Assembler<'_> {
         }
         let coefficients = layout::write_closures(coefficients);
         self.opened(KernelId::Closures(id), coefficients);
-        let model = self.model;
-        let base_check = |check: &BaseCheck| BaseCheckInfo {
-            end: check.end,
-            written: model.written(&check.location),
-            line: model.line(&check.location),
-        };
-        CaseInfo {
-            choices: case.choices.clone(),
-            base_conditions,
-            base_checks: case.base_checks.iter().map(base_check).collect(),
-            conditions,
-            adjoint,
-            closures,
-        }
+        infos
     }
 
     fn amplitude(&mut self) -> AmplitudeInfo {

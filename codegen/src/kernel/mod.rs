@@ -4,6 +4,7 @@ mod assemble;
 mod lower;
 mod polarise;
 mod program;
+mod structure;
 
 pub use assemble::kernels;
 pub use landau_contract::{Array, Kernel, ModelKernels, Operation, Register};

@@ -9,11 +9,11 @@ use landau_contract::*;
 use std::collections::{BTreeSet, HashMap};
 
 impl Assembler<'_> {
-    pub(super) fn lower(mut self, mut structure: Structure) -> ModelKernels {
-        // Closed forms are asked for to the same order as solved fields.
+    /// The base fields that the spec gives in closed form, to the same order as those that are solved for.
+    pub(super) fn closed(&mut self) {
         let zero = self.graph.zero();
         let mut closed = Vec::new();
-        for field in structure.fields.ids() {
+        for field in self.model.fields.ids() {
             for order in 0..=self.base_order {
                 closed.push(match self.model.base.closed[field] {
                     Some(_) => base_value(self.graph, &self.model.base.closed, field, order as u8),
@@ -22,76 +22,42 @@ impl Assembler<'_> {
             }
         }
         self.expressions.push((KernelId::Closed, closed));
-        structure.base_order = self.base_order;
-        let residual_outputs = self.residuals();
-        structure.residual_jets = residual_jets(self.graph, &residual_outputs);
-        let residual_jets = structure.residual_jets.clone();
-        let forms = self.forms();
-        let graph = &*self.graph;
-        let state = structure.state();
-        let locate = |node: &Node| match node {
+    }
+
+    /// The kernels of the operators and those of the residuals.
+    pub(super) fn lowered(
+        &self,
+        residuals: &[(ResidualId, Vec<Id>)],
+        residual_jets: &[Jet],
+    ) -> (Vec<(KernelId, Kernel)>, Vec<(ResidualId, Kernel)>) {
+        let (parameters, fields) = (self.model.parameters.len(), self.model.fields.len());
+        let state = StateLayout::new(parameters, fields, self.base_order);
+        let at_base = |node: &Node| match node {
             Node::Coordinate => Some((0, state.coordinate())),
             Node::Wavenumber => Some((0, state.wavenumber())),
             Node::Parameter(index) => Some((0, state.parameter(*index))),
             Node::Base(field, order) => Some((0, state.base(*field, usize::from(*order)))),
             _ => None,
         };
-        let kernels: Vec<(KernelId, Kernel)> = self
-            .expressions
-            .iter()
-            .map(|(id, outputs)| {
-                (
-                    *id,
-                    Lowering {
-                        inputs: RESIDUAL_INPUTS[..1].to_vec(),
-                        locate: &locate,
-                    }
-                    .lower(graph, outputs),
-                )
-            })
-            .collect();
-        let locate = |node: &Node| match node {
-            Node::Coordinate => Some((0, state.coordinate())),
-            Node::Wavenumber => Some((0, state.wavenumber())),
-            Node::Parameter(index) => Some((0, state.parameter(*index))),
+        let at_state = |node: &Node| match node {
+            Node::Base(..) => None,
             Node::Jet(jet) => residual_jets.iter().position(|j| j == jet).map(|p| (1, p)),
-            _ => None,
+            leaf => at_base(leaf),
         };
-        let residuals = residual_outputs
-            .iter()
-            .map(|(id, outputs)| {
-                (
-                    *id,
-                    Lowering {
-                        inputs: RESIDUAL_INPUTS.to_vec(),
-                        locate: &locate,
-                    }
-                    .lower(graph, outputs),
-                )
-            })
-            .collect();
-        let count = |kernels: &[(KernelId, Kernel)], of: fn(&Kernel) -> usize| -> usize {
-            let real: usize = kernels
-                .iter()
-                .map(|(_, k)| of(k))
-                .fold(0, usize::saturating_add);
-            real.saturating_add(forms.iter().flatten().flatten().map(of).sum())
-        };
-        structure.operations = vec![
-            count(&kernels, |k| k.unshared),
-            count(&kernels, Kernel::shared),
-        ];
-        ModelKernels {
-            structure,
-            kernels,
-            forms,
-            residuals,
-            undeclared: Vec::new(),
-        }
+        let lower =
+            |inputs: &[Array], locate: &dyn Fn(&Node) -> Option<(usize, usize)>, ids: &[Id]| {
+                let inputs = inputs.to_vec();
+                Lowering { inputs, locate }.lower(self.graph, ids)
+            };
+        let kernels = self.expressions.iter();
+        let kernels = kernels.map(|(id, ids)| (*id, lower(&RESIDUAL_INPUTS[..1], &at_base, ids)));
+        let residuals = residuals.iter();
+        let residuals = residuals.map(|(id, ids)| (*id, lower(&RESIDUAL_INPUTS, &at_state, ids)));
+        (kernels.collect(), residuals.collect())
     }
 
     /// The unexpanded residuals in the fields' derivatives, laws opened.
-    fn residuals(&mut self) -> Vec<(ResidualId, Vec<Id>)> {
+    pub(super) fn residuals(&mut self) -> Vec<(ResidualId, Vec<Id>)> {
         let mut residuals = Vec::new();
         let balances: Vec<Id> = self.model.balances.iter().map(|b| b.residual).collect();
         let opened = balances
@@ -138,7 +104,7 @@ impl Assembler<'_> {
         Some(integrands.collect())
     }
 
-    fn forms(&mut self) -> Vec<Table<BalanceId, Option<Kernel>>> {
+    pub(super) fn forms(&mut self) -> Vec<Table<BalanceId, Option<Kernel>>> {
         let (jets, coefficients) = form_tables(&self.operators.nonlinear);
         let position: HashMap<Id, usize> = coefficients
             .iter()
@@ -183,7 +149,7 @@ impl Assembler<'_> {
     }
 }
 
-fn residual_jets(graph: &Graph, residuals: &[(ResidualId, Vec<Id>)]) -> Vec<Jet> {
+pub(super) fn residual_jets(graph: &Graph, residuals: &[(ResidualId, Vec<Id>)]) -> Vec<Jet> {
     let roots = residuals.iter().flat_map(|(_, ids)| ids.iter().copied());
     jets(graph, &roots.collect::<Vec<Id>>())
 }
@@ -196,4 +162,17 @@ pub(crate) fn jets(graph: &Graph, roots: &[Id]) -> Vec<Jet> {
         _ => None,
     });
     jets.collect::<BTreeSet<Jet>>().into_iter().collect()
+}
+
+/// Operations of the kernels of the operators: as written, and after sharing.
+pub(super) fn operations(
+    kernels: &[(KernelId, Kernel)],
+    forms: &[Table<BalanceId, Option<Kernel>>],
+) -> [usize; 2] {
+    let count = |of: fn(&Kernel) -> usize| -> usize {
+        let real = kernels.iter().map(|(_, kernel)| of(kernel));
+        let real = real.fold(0, usize::saturating_add);
+        real.saturating_add(forms.iter().flatten().flatten().map(of).sum())
+    };
+    [count(|kernel| kernel.unshared), count(Kernel::shared)]
 }

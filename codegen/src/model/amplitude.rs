@@ -2,9 +2,10 @@
 
 use super::context::Context;
 use super::mistake::view;
+use super::place::place_inside;
 use super::scope::{Names, Resolved, is_two};
 use super::statement::field_index;
-use super::{Amplitude, Balance, Closure, Field, Law, Weight};
+use super::{Amplitude, Balance, Closure, Field, Interval, Law, Weight};
 use crate::diagnostic::Diagnostic;
 use crate::graph::{BalanceId, FieldId, Graph, Id, LawId, Node, Operator, Table};
 use crate::syntax::tree::*;
@@ -70,7 +71,11 @@ fn moving_fields(
 }
 
 /// The amplitude block.
-pub(super) fn amplitude(item: &AmplitudeItem, names: &mut Names) -> Resolved<Amplitude> {
+pub(super) fn amplitude(
+    item: &AmplitudeItem,
+    interval: Option<&Interval>,
+    names: &mut Names,
+) -> Resolved<Amplitude> {
     match item {
         AmplitudeItem::Integral { integrand, value } => {
             let mut weights = Vec::new();
@@ -93,7 +98,7 @@ pub(super) fn amplitude(item: &AmplitudeItem, names: &mut Names) -> Resolved<Amp
                 names.written(value),
             ];
             let place = match place {
-                Some(place) => Some(names.resolve(place, Context::Constant)?),
+                Some(place) => Some(place_inside(place, interval, names)?),
                 None => None,
             };
             let field = modulus_of(field, names)?;
@@ -113,12 +118,12 @@ fn quadratic(
     expression: &Expression,
     weight: Option<(Id, String)>,
     names: &mut Names,
-    found: &mut Vec<Weight>,
+    weights: &mut Vec<Weight>,
 ) -> Resolved<()> {
     match &expression.kind {
         ExpressionKind::Binary(Binary::Add, left, right) => {
-            quadratic(left, weight.clone(), names, found)?;
-            quadratic(right, weight, names, found)
+            quadratic(left, weight.clone(), names, weights)?;
+            quadratic(right, weight, names, weights)
         }
         ExpressionKind::Binary(Binary::Multiply, left, right) => {
             let (factor, square) = if contains_modulus(right) {
@@ -134,14 +139,14 @@ fn quadratic(
                 }
                 None => (factor, text),
             };
-            quadratic(square, Some(weight), names, found)
+            quadratic(square, Some(weight), names, weights)
         }
         ExpressionKind::Binary(Binary::Power, base, exponent) if matches!(&exponent.kind, ExpressionKind::Number(two) if is_two(two)) =>
         {
             let field = modulus_of(base, names)?;
             let one = names.graph.one();
             let (weight, written) = weight.unwrap_or((one, String::new()));
-            found.push(Weight {
+            weights.push(Weight {
                 field,
                 weight,
                 written,

@@ -20,6 +20,7 @@ impl Model {
     /// Every mistake of its form.
     pub fn read(
         &mut self,
+        graph: &mut Graph,
         source: &SourceFile,
         definitions: &[(String, Id)],
     ) -> Result<Id, Diagnostics> {
@@ -36,13 +37,13 @@ impl Model {
             .flatten()
             .collect();
         let mut arguments = definitions.to_vec();
-        arguments.push(("k".to_owned(), self.graph.wavenumber()));
+        arguments.push(("k".to_owned(), graph.wavenumber()));
         let mut names = Vec::new();
         sides
             .iter()
             .for_each(|side| collect_names(side, &mut names));
         for name in names {
-            if let Some(id) = self.base_symbol(&name) {
+            if let Some(id) = self.base_symbol(graph, &name) {
                 arguments.push((name, id));
             }
         }
@@ -51,13 +52,13 @@ impl Model {
             context: Context::State,
             arguments: &arguments,
         };
-        std::mem::swap(&mut self.graph, &mut self.names.graph);
+        std::mem::swap(graph, &mut self.names.graph);
         self.names.work_before = self.names.graph.work();
         let read: Vec<_> = sides
             .iter()
             .map(|side| self.names.expression(side, &view))
             .collect();
-        std::mem::swap(&mut self.graph, &mut self.names.graph);
+        std::mem::swap(graph, &mut self.names.graph);
         let mut list = std::mem::take(&mut self.names.further);
         let mut values = Vec::new();
         for side in read {
@@ -68,13 +69,13 @@ impl Model {
         }
         match values.as_slice() {
             _ if !list.is_empty() => Err(mistaken(list)),
-            [left, right] => Ok(self.graph.sub(*left, *right)),
+            [left, right] => Ok(graph.sub(*left, *right)),
             _ => Ok(values[0]),
         }
     }
 
     /// n0, n0_y, p0_nT, …: a name, a nought, subscripts.
-    fn base_symbol(&mut self, name: &str) -> Option<Id> {
+    fn base_symbol(&self, graph: &mut Graph, name: &str) -> Option<Id> {
         for (nought, _) in name.match_indices('0') {
             let (stem, below) = (&name[..nought], &name[nought + 1..]);
             let below = match below.strip_prefix('_') {
@@ -90,12 +91,10 @@ impl Model {
             let marks = self.subscripts(below);
             return Some(match (field, law, marks) {
                 (Some(field), _, Some((index, y))) if index.iter().all(|&i| i == 0) => {
-                    self.graph.base(field, y)
+                    graph.base(field, y)
                 }
-                (None, Some(law), Some((index, y))) => {
-                    self.graph.base_law(LawAtom { law, index, y })
-                }
-                _ => symbol(&mut self.graph, stem, below),
+                (None, Some(law), Some((index, y))) => graph.base_law(LawAtom { law, index, y }),
+                _ => symbol(graph, stem, below),
             });
         }
         None

@@ -101,7 +101,31 @@ impl Names {
             _ => None,
         };
         hint = habit.map(str::to_owned).or(hint);
+        let hint = self.coordinate_meant(name).or(hint);
         let expected = "a field, a parameter, a law or a definition";
-        Diagnostic::new(place.clone(), format!("`{name}` is not known"), expected).maybe_hint(hint)
+        Diagnostic::new(place.clone(), format!("`{name}` is not known"), expected)
+            .about_unknown(name)
+            .maybe_hint(hint)
+    }
+
+    /// What to write for x, y, z, or a derivative along one of them, where the coordinates have other names.
+    fn coordinate_meant(&self, name: &str) -> Option<String> {
+        let coordinate = name.strip_prefix('d').unwrap_or(name);
+        if !["x", "y", "z", "r"].contains(&coordinate) {
+            return None;
+        }
+        let bounded = self.coordinate.as_deref();
+        let named = match bounded {
+            Some(bounded) => format!("the coordinates are `{}` and `{bounded}`", self.periodic),
+            None => format!("the periodic coordinate is `{}`", self.periodic),
+        };
+        if coordinate == name {
+            return Some(named);
+        }
+        let derivatives = match bounded {
+            Some(bounded) => format!("d{}(q) or d{bounded}(q)", self.periodic),
+            None => format!("d{}(q)", self.periodic),
+        };
+        Some(format!("{named}: write {derivatives}"))
     }
 }

@@ -8,6 +8,7 @@ mod import;
 mod mistake;
 mod operation;
 mod parameter;
+mod place;
 mod resolve;
 mod scope;
 mod statement;
@@ -19,27 +20,26 @@ pub use resolve::resolve;
 
 use crate::diagnostic::{Location, shortened};
 use crate::formula::{Arrangement, Letters};
-use crate::graph::{Graph, Id};
+use crate::graph::Id;
 
-/// A model whose form has been checked as far as names go.
+/// A model whose form has been checked as far as names go. Its expressions are nodes of one graph, which stands beside
+/// it.
 pub struct Model {
-    /// As it is declared.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub title: String,
-    /// Every expression of the model.
-    pub graph: Graph,
     /// Name of the periodic coordinate.
     pub periodic: String,
     /// The cross-stream coordinate, where there is one.
     pub interval: Option<Interval>,
-    /// In the order of their declaration.
+    /// In the order of their declaration in the spec.
     pub parameters: Table<ParameterId, Parameter>,
-    /// In the order of their declaration.
+    /// In the order of their declaration in the spec.
     pub fields: Table<FieldId, Field>,
-    /// In the order of their declaration.
+    /// In the order of their declaration in the spec.
     pub laws: Table<LawId, Law>,
-    /// In the order of their declaration.
+    /// In the order of their declaration in the spec.
     pub balances: Table<BalanceId, Balance>,
     /// The base state.
     pub base: Base,
@@ -51,7 +51,7 @@ pub struct Model {
     pub amplitude: Amplitude,
     /// Output functionals.
     pub outputs: Vec<Output>,
-    /// Where the model does what it is there for.
+    /// A wavenumber and a nearby eigenvalue that show what the model is about.
     pub typical: Option<Typical>,
     /// The text of every file that was read; the spec first.
     pub sources: Vec<crate::diagnostic::SourceFile>,
@@ -114,7 +114,7 @@ pub struct Typical {
 
 /// The cross-stream coordinate.
 pub struct Interval {
-    /// As it is declared.
+    /// Name in the spec.
     pub name: String,
     /// The lower bound.
     pub lower: Id,
@@ -122,7 +122,7 @@ pub struct Interval {
     pub upper: Id,
     /// The ends as the user wrote them.
     pub written: [String; 2],
-    /// Where the spec says so.
+    /// Place of its text in the spec.
     pub location: Location,
 }
 
@@ -152,9 +152,9 @@ impl Interval {
 /// A parameter of the model.
 #[derive(Clone)]
 pub struct Parameter {
-    /// As it is declared.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub doc: String,
     /// Its value where none is set.
     pub default: f64,
@@ -166,15 +166,15 @@ pub struct Parameter {
     pub choices: Vec<String>,
     /// Whether it takes whole numbers alone.
     pub whole: bool,
-    /// Where the spec says so.
+    /// Place of its text in the spec.
     pub location: Location,
 }
 
 /// A field of the model.
 pub struct Field {
-    /// As it is declared.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub doc: String,
     /// Where the base state must lie.
     pub lower: f64,
@@ -182,15 +182,15 @@ pub struct Field {
     pub upper: f64,
     /// An unknown number, constant in x and y, rather than a profile.
     pub uniform: bool,
-    /// Where the spec says so.
+    /// Place of its text in the spec.
     pub location: Location,
 }
 
 /// An opaque function of the fields, the coordinate and the parameters.
 pub struct Law {
-    /// As it is declared.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub doc: String,
     /// The expression.
     pub body: Id,
@@ -198,9 +198,9 @@ pub struct Law {
 
 /// left − right of a balance, divided (if asked) by a base-state quantity.
 pub struct Balance {
-    /// As it is declared.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub doc: String,
     /// In terms of the full state, derivatives not yet carried out.
     pub residual: Id,
@@ -208,20 +208,20 @@ pub struct Balance {
     pub divisor: Option<Id>,
     /// The field that it is for.
     pub paired_field: Option<FieldId>,
-    /// Where the spec says so.
+    /// Place of its text in the spec.
     pub location: Location,
 }
 
 /// left − right of a condition at one end.
 #[derive(Clone)]
 pub struct Condition {
-    /// Where it holds.
+    /// The end of the interval at which it holds.
     pub end: End,
     /// Left side minus right side.
     pub residual: Id,
     /// Switches and the choices under which the condition holds.
     pub guard: Vec<(ParameterId, usize)>,
-    /// Where the spec says so.
+    /// Place of its text in the spec.
     pub location: Location,
 }
 
@@ -230,9 +230,9 @@ pub struct Condition {
 pub struct Integral {
     /// What is integrated.
     pub integrand: Id,
-    /// What it has to be.
+    /// The value of the integral: an expression in parameters.
     pub value: Id,
-    /// Where the spec says so.
+    /// Place of its text in the spec.
     pub location: Location,
 }
 
@@ -248,7 +248,7 @@ pub struct Base {
     pub integrals: Vec<Integral>,
     /// Conditions that determine a parameter set to `auto`.
     pub automatic: Vec<(ParameterId, Condition)>,
-    /// Where the spec says so.
+    /// Place of its text in the spec.
     pub location: Location,
 }
 
@@ -259,19 +259,19 @@ pub enum Closure {
     Conserved {
         /// What is integrated.
         integrand: Id,
-        /// Where the spec says so.
+        /// Place of its text in the spec.
         location: Location,
     },
     /// A field that is determined up to a constant.
     Gauge {
-        /// Which field.
+        /// The field whose constant is arbitrary.
         field: FieldId,
-        /// Where the spec says so.
+        /// Place of its text in the spec.
         location: Location,
     },
     /// A number with a condition of its own.
     Unknown {
-        /// Which field.
+        /// The number, declared as a field without a profile.
         field: FieldId,
         /// Its condition.
         integral: Integral,
@@ -284,18 +284,18 @@ pub enum Amplitude {
     Integral {
         /// One a field.
         weights: Vec<Weight>,
-        /// What it has to be.
+        /// The value that fixes the size of a mode: an expression in parameters and k.
         value: Id,
         /// As the spec writes it.
         written: String,
     },
     /// |field| = |value| at a place
     Point {
-        /// Which field.
+        /// The field whose value is taken.
         field: FieldId,
-        /// Where, if not everywhere.
+        /// The place; `None` in a model without a cross-stream coordinate.
         place: Option<Id>,
-        /// What it has to be.
+        /// The value that fixes the size of a mode: an expression in parameters and k.
         value: Id,
         /// Place and value as the user wrote them.
         written: [String; 2],
@@ -304,7 +304,7 @@ pub enum Amplitude {
 
 /// weight |field|², the weight also as the user wrote it; nothing for 1.
 pub struct Weight {
-    /// Which field.
+    /// The field whose square counts.
     pub field: FieldId,
     /// Its weight.
     pub weight: Id,
@@ -314,14 +314,14 @@ pub struct Weight {
 
 /// An output functional.
 pub struct Output {
-    /// As it is declared.
+    /// Name in the spec.
     pub name: String,
-    /// In words.
+    /// The text in quotation marks beside the name; empty if there is none.
     pub doc: String,
     /// `None` for an integral over the interval.
     pub place: Option<Id>,
     /// The expression.
     pub body: Id,
-    /// Where the spec says so.
+    /// Place of its text in the spec.
     pub location: Location,
 }

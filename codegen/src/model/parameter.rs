@@ -7,15 +7,16 @@ use super::scope::{Names, Resolved, View};
 use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::graph::{Id, Node, ParameterId};
 use crate::syntax::tree::*;
+use landau_contract::{apply, choose};
 use num_traits::ToPrimitive;
 use std::collections::HashMap;
 
 impl Names {
     /// A parameter seen from a scope; a law file's own are registered on first use.
     pub fn find_parameter(&mut self, name: &str, scope: usize) -> Option<ParameterId> {
-        if let Some(known) = self.parameters.position(|p| p.name == name) {
+        if let Some(id) = self.parameters.position(|p| p.name == name) {
             let visible = scope == 0 || self.scopes[scope].parameters.contains_key(name);
-            return visible.then_some(known);
+            return visible.then_some(id);
         }
         let item = self.scopes[scope].parameters.get(name).cloned()?;
         let parameter = self.constant_parameter(&item)?;
@@ -43,8 +44,17 @@ impl Names {
         })
     }
 
-    /// The value of an expression without atoms.
+    /// The value of an expression of numbers.
     fn numeric(&self, id: Id) -> Option<f64> {
+        self.value(id, &|_| None)
+    }
+
+    /// The value of an expression of numbers and parameters, each parameter at its default.
+    pub fn default_value(&self, id: Id) -> Option<f64> {
+        self.value(id, &|parameter| Some(self.parameters[parameter].default))
+    }
+
+    fn value(&self, id: Id, parameter: &dyn Fn(ParameterId) -> Option<f64>) -> Option<f64> {
         let mut values: HashMap<Id, f64> = HashMap::new();
         for node in self.graph.topological(&[id]) {
             let value = match self.graph.node(node) {
@@ -58,6 +68,12 @@ impl Names {
                 Node::Product(factors) => factors.iter().try_fold(1.0, |product, (b, e)| {
                     Some(product * values[b].powf(e.to_f64()?))
                 })?,
+                Node::Parameter(id) => parameter(*id)?,
+                Node::Call(function, argument) => apply(*function, values[argument]),
+                Node::Select(switch, branches) => {
+                    let branches: Vec<f64> = branches.iter().map(|b| values[b]).collect();
+                    choose(parameter(*switch)?, &branches)
+                }
                 _ => return None,
             };
             values.insert(node, value);

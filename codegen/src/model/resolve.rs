@@ -4,12 +4,13 @@ use super::import::load_imports;
 use super::scope::{Names, Scope};
 use super::{Model, statement};
 use crate::diagnostic::Diagnostics;
+use crate::graph::Graph;
 use crate::sources::Sources;
 use crate::syntax::parse_model;
 use std::collections::BTreeMap;
 
-/// Resolves a spec, or reports every mistake that its form shows.
-pub fn resolve(sources: &Sources) -> Result<Model, Diagnostics> {
+/// Resolves a spec into a model and the graph of its expressions, or reports every mistake that its form shows.
+pub fn resolve(sources: &Sources) -> Result<(Graph, Model), Diagnostics> {
     let mut names = Names::new();
     names.files.push(sources.spec.clone());
     let (tree, mut mistakes) = parse_model(0, &sources.spec.text);
@@ -29,8 +30,8 @@ pub fn resolve(sources: &Sources) -> Result<Model, Diagnostics> {
         None
     };
     match model {
-        Some(model) if mistakes.is_empty() => Ok(model),
-        Some(model) => Err(Diagnostics {
+        Some((graph, model)) if mistakes.is_empty() => Ok((graph, model)),
+        Some((_, model)) => Err(Diagnostics {
             files: model.sources,
             list: mistakes,
         }),

@@ -157,22 +157,8 @@ impl Names {
             }
             return Ok(self.graph.coordinate());
         }
-        if view.scope == 0 {
-            if let Some(&field) = self.fields.get(name) {
-                if !matches!(view.context, Context::State | Context::Law) {
-                    return Err(view.context.refusal(place, name, "a field"));
-                }
-                return Ok(self.graph.jet(Jet::value(field)));
-            }
-            if let Some(&law) = self.laws.get(name) {
-                if !matches!(view.context, Context::State | Context::Law) {
-                    return Err(view.context.refusal(place, name, "a law"));
-                }
-                return Ok(self.law_atom(law));
-            }
-            if name == "k" && view.context == Context::Amplitude {
-                return Ok(self.graph.wavenumber());
-            }
+        if let Some(id) = self.name_of_model(name, place, view)? {
+            return Ok(id);
         }
         if let Some(parameter) = self.find_parameter(name, view.scope) {
             self.used[parameter] = true;
@@ -220,6 +206,28 @@ impl Names {
         Err(self.unknown(name, place, view))
     }
 
+    /// A field, a law, or k: names that law files do not see.
+    fn name_of_model(&mut self, name: &str, place: &Location, view: &View) -> Resolved<Option<Id>> {
+        if view.scope != 0 {
+            return Ok(None);
+        }
+        let holds_fields = matches!(view.context, Context::State | Context::Law);
+        if let Some(&field) = self.fields.get(name) {
+            if !holds_fields {
+                return Err(view.context.refusal(place, name, "a field"));
+            }
+            return Ok(Some(self.graph.jet(Jet::value(field))));
+        }
+        if let Some(&law) = self.laws.get(name) {
+            if !holds_fields {
+                return Err(view.context.refusal(place, name, "a law"));
+            }
+            return Ok(Some(self.law_atom(law)));
+        }
+        let is_wavenumber = name == "k" && view.context == Context::Amplitude;
+        Ok(is_wavenumber.then(|| self.graph.wavenumber()))
+    }
+
     pub fn law_atom(&mut self, law: LawId) -> Id {
         let index = Table::filled(self.field_count, 0);
         self.graph.state_law(LawAtom { law, index, y: 0 })
@@ -262,31 +270,8 @@ impl Names {
             )
             .hint("integrals stand in `base`, `mean`, `amplitude` and `outputs`"));
         }
-        let found = match self.scopes[view.scope].definitions.get(word) {
-            Some(definition) => Some((view.scope, definition.clone())),
-            None => self.scopes[view.scope]
-                .imports
-                .get(word)
-                .cloned()
-                .and_then(|(scope, law)| {
-                    self.scopes[scope]
-                        .definitions
-                        .get(&law)
-                        .cloned()
-                        .map(|d| (scope, d))
-                }),
-        };
-        let Some((scope, definition)) = found else {
-            if self.fields.contains_key(word) || self.find_parameter(word, view.scope).is_some() {
-                let message = format!("`{word}` is not a function");
-                return Err(Diagnostic::new(
-                    place.clone(),
-                    message,
-                    "an operator between the factors",
-                )
-                .hint(format!("write a product as {word}*(…)")));
-            }
-            return Err(self.unknown(word, &name.location, view));
+        let Some((scope, definition)) = self.function(word, view.scope) else {
+            return Err(self.no_function(name, place, view));
         };
         let expected = definition.arguments.as_deref().unwrap_or_default().len();
         if expected != arguments.len() {
@@ -305,6 +290,27 @@ impl Names {
             values.push(self.expression(argument, view)?);
         }
         self.expand(scope, &definition, &values, place, view.context)
+    }
+
+    /// A definition or an imported law of this name, and the scope that its body is read in.
+    fn function(&self, name: &str, scope: usize) -> Option<(usize, Definition)> {
+        if let Some(definition) = self.scopes[scope].definitions.get(name) {
+            return Some((scope, definition.clone()));
+        }
+        let (file, law) = self.scopes[scope].imports.get(name)?;
+        let definition = self.scopes[*file].definitions.get(law)?;
+        Some((*file, definition.clone()))
+    }
+
+    /// A name before brackets that is no function: perhaps a product without its sign.
+    fn no_function(&mut self, name: &Name, place: &Location, view: &View) -> Diagnostic {
+        let word = name.text.as_str();
+        if !self.fields.contains_key(word) && self.find_parameter(word, view.scope).is_none() {
+            return self.unknown(word, &name.location, view);
+        }
+        let message = format!("`{word}` is not a function");
+        Diagnostic::new(place.clone(), message, "an operator between the factors")
+            .hint(format!("write a product as {word}*(…)"))
     }
 
     fn one_argument(
@@ -400,8 +406,8 @@ impl Names {
             .hint(format!("{} → {name}", chain.join(" → "))));
         }
         let plain = values.is_empty() && context == Context::State;
-        if plain && let Some(&known) = self.memo.get(&key) {
-            return Ok(known);
+        if plain && let Some(&value) = self.memo.get(&key) {
+            return Ok(value);
         }
         self.expansions += 1;
         if self.expansions > MOST_EXPANSIONS {

@@ -3,10 +3,11 @@
 use super::context::Context;
 use super::import::{Imported, bind_imports};
 use super::mistake::{beginning, twice};
+use super::place::{end, place_inside};
 use super::scope::{Names, Resolved};
 use super::*;
 use crate::diagnostic::{Diagnostic, nearest};
-use crate::graph::{Jet, Node, Operator};
+use crate::graph::{Graph, Jet, Node, Operator};
 use crate::syntax::tree::*;
 use std::collections::BTreeSet;
 
@@ -21,13 +22,13 @@ pub(super) fn keep<T>(result: Resolved<T>, mistakes: &mut Vec<Diagnostic>) -> Op
     result.map_err(|mistake| mistakes.push(mistake)).ok()
 }
 
-/// The whole model; `None` where nothing sensible could be made of it.
+/// The whole model and the graph of its expressions; `None` where nothing sensible could be made of it.
 pub(super) fn model(
     tree: &ModelTree,
     imported: &[Imported],
     names: &mut Names,
     mistakes: &mut Vec<Diagnostic>,
-) -> Option<Model> {
+) -> Option<(Graph, Model)> {
     let Some(name) = &tree.name else {
         let message = "the model has no name";
         mistakes.push(Diagnostic::new(
@@ -43,72 +44,38 @@ pub(super) fn model(
     for definition in tree.definitions.iter().filter(|d| !d.is_law) {
         declaration::declare(definition, names, mistakes);
     }
-    let mut laws = bind_imports(imported, names, mistakes);
-    let own_laws = tree.definitions.iter().filter(|d| d.is_law);
-    if let Some(surplus) = own_laws.clone().nth(MOST_LAWS) {
-        mistakes.push(Diagnostic::new(
-            surplus.name.location.clone(),
-            format!("the model has {} laws", own_laws.count()),
-            format!("at most {MOST_LAWS}"),
-        ));
-        return None;
-    }
-    for definition in own_laws {
-        if let Some(law) = law(definition, names, mistakes) {
-            names.graph.declare_law(law.body);
-            names.laws.insert(law.name.clone(), laws.push(law));
-        }
-    }
+    let laws = laws(tree, imported, names, mistakes)?;
     let interval = declaration::interval(tree, names, mistakes);
     each_once(tree.balances.iter().map(|b| &b.name), mistakes);
     each_once(tree.outputs.iter().map(|o| &o.name), mistakes);
-    let balances: Table<BalanceId, Balance> = tree
-        .balances
-        .iter()
-        .filter_map(|b| keep(balance(b, names), mistakes))
-        .collect();
+    let balances: Table<BalanceId, Balance> = each(&tree.balances, names, mistakes, balance);
     let ends = interval.as_ref().map(|i| (i.lower, i.upper));
     let base = base(&tree.base, fields.len(), ends, names, mistakes);
     let mut boundary = Vec::new();
     for wall in &tree.boundary {
         wall_conditions(wall, ends, names, mistakes, &mut boundary);
     }
-    let mean: Vec<Closure> = tree
-        .mean
-        .iter()
-        .filter_map(|m| keep(mean(m, names), mistakes))
-        .collect();
+    let mean: Vec<Closure> = each(&tree.mean, names, mistakes, mean);
     let amplitude = match &tree.amplitude {
-        Some(item) => keep(amplitude::amplitude(item, names), mistakes),
+        Some(item) => {
+            let amplitude = amplitude::amplitude(item, interval.as_ref(), names);
+            keep(amplitude, mistakes)
+        }
         None => Some(amplitude::default_amplitude(
             &fields, &balances, &mean, &laws, names,
         )),
     };
-    let outputs = tree
-        .outputs
-        .iter()
-        .filter_map(|o| keep(output(o, names), mistakes))
-        .collect();
-    let typical = tree
-        .typical
-        .as_ref()
-        .and_then(|item| keep(typical(item, names), mistakes));
+    let outputs = each(&tree.outputs, names, mistakes, |item, names| {
+        output(item, interval.as_ref(), names)
+    });
+    let typical = tree.typical.as_ref();
+    let typical = typical.and_then(|item| keep(typical_of(item, names), mistakes));
     check_definitions(names, mistakes);
     mistakes.append(&mut names.further);
-    // What a broken statement would have used is not known.
-    let whole = mistakes.is_empty();
-    for (parameter, used) in names.parameters.iter().zip(&names.used) {
-        if whole && !used {
-            let message = format!("the parameter `{}` is never used", parameter.name);
-            let expected = "a parameter that some expression uses";
-            mistakes.push(Diagnostic::new(
-                parameter.location.clone(),
-                message,
-                expected,
-            ));
-        }
-    }
-    Some(Model {
+    check_used(names, mistakes);
+    let amplitude = amplitude?;
+    let graph = std::mem::take(&mut names.graph);
+    let model = Model {
         name: name.text.clone(),
         title: tree.title.clone(),
         periodic: names.periodic.clone(),
@@ -120,13 +87,71 @@ pub(super) fn model(
         base,
         boundary,
         mean,
-        amplitude: amplitude?,
+        amplitude,
         outputs,
         typical,
         sources: names.files.clone(),
-        graph: std::mem::take(&mut names.graph),
         names: std::mem::replace(names, Names::new()),
-    })
+    };
+    Some((graph, model))
+}
+
+/// What each item of a list means; those with mistakes are left out.
+fn each<Item, Meaning, List: FromIterator<Meaning>>(
+    items: &[Item],
+    names: &mut Names,
+    mistakes: &mut Vec<Diagnostic>,
+    meaning: impl Fn(&Item, &mut Names) -> Resolved<Meaning>,
+) -> List {
+    let meanings = items.iter();
+    meanings
+        .filter_map(|item| keep(meaning(item, names), mistakes))
+        .collect()
+}
+
+/// The laws of the imports, then those of the model.
+fn laws(
+    tree: &ModelTree,
+    imported: &[Imported],
+    names: &mut Names,
+    mistakes: &mut Vec<Diagnostic>,
+) -> Option<Table<LawId, Law>> {
+    let mut laws = bind_imports(imported, names, mistakes);
+    let definitions = tree.definitions.iter().filter(|d| d.is_law);
+    if let Some(surplus) = definitions.clone().nth(MOST_LAWS) {
+        mistakes.push(Diagnostic::new(
+            surplus.name.location.clone(),
+            format!("the model has {} laws", definitions.count()),
+            format!("at most {MOST_LAWS}"),
+        ));
+        return None;
+    }
+    for definition in definitions {
+        if let Some(law) = law(definition, names, mistakes) {
+            names.graph.declare_law(law.body);
+            names.laws.insert(law.name.clone(), laws.push(law));
+        }
+    }
+    Some(laws)
+}
+
+/// Reports parameters that no expression uses. A broken statement may have used one, so nothing is reported beside
+/// mistakes.
+fn check_used(names: &Names, mistakes: &mut Vec<Diagnostic>) {
+    if !mistakes.is_empty() {
+        return;
+    }
+    for (parameter, used) in names.parameters.iter().zip(&names.used) {
+        if !used {
+            let message = format!("the parameter `{}` is never used", parameter.name);
+            let expected = "a parameter that some expression uses";
+            mistakes.push(Diagnostic::new(
+                parameter.location.clone(),
+                message,
+                expected,
+            ));
+        }
+    }
 }
 
 /// Reports names that stand twice in one list.
@@ -202,6 +227,7 @@ pub(super) fn field_index(name: &Name, names: &Names) -> Resolved<FieldId> {
             message,
             format!("one of {}", fields.join(", ")),
         )
+        .about_unknown(&name.text)
         .maybe_hint(near.map(|n| format!("did you mean `{n}`?")))
     })
 }
@@ -239,17 +265,17 @@ fn base(
     mistakes: &mut Vec<Diagnostic>,
 ) -> Base {
     let profiles = |items: &[(Name, Expression)], names: &mut Names, mistakes: &mut Vec<_>| {
-        let mut found = Table::filled(fields, None);
+        let mut values = Table::filled(fields, None);
         for (name, expression) in items {
             let Some(field) = keep(field_index(name, names), mistakes) else {
                 continue;
             };
-            if found[field].is_some() {
+            if values[field].is_some() {
                 mistakes.push(twice(name));
             }
-            found[field] = keep(names.resolve(expression, Context::Profile), mistakes);
+            values[field] = keep(names.resolve(expression, Context::Profile), mistakes);
         }
-        found
+        values
     };
     let closed = profiles(&block.closed, names, mistakes);
     let guesses = profiles(&block.guesses, names, mistakes);
@@ -264,36 +290,7 @@ fn base(
         .collect();
     let mut automatic = Vec::new();
     for item in &block.automatic {
-        let condition = (|| {
-            let parameter = names
-                .find_parameter(&item.parameter.text, 0)
-                .ok_or_else(|| {
-                    let message = format!("`{}` is not a parameter", item.parameter.text);
-                    Diagnostic::new(
-                        item.parameter.location.clone(),
-                        message,
-                        "the name of a parameter",
-                    )
-                })?;
-            if names.parameters[parameter].whole {
-                let message = format!("`{}` takes whole numbers", item.parameter.text);
-                let place = item.parameter.location.clone();
-                let expected = "a parameter that varies continuously";
-                return Err(Diagnostic::new(place, message, expected));
-            }
-            let end = end(&item.place, ends, names)?;
-            let residual = difference(&item.equation, names)?;
-            let location = item.equation.location.clone();
-            Ok((
-                parameter,
-                Condition {
-                    end,
-                    residual,
-                    guard: Vec::new(),
-                    location,
-                },
-            ))
-        })();
+        let condition = automatic_condition(item, ends, names);
         automatic.extend(keep(condition, mistakes));
     }
     let location = block.location.clone().unwrap_or_else(beginning);
@@ -307,6 +304,31 @@ fn base(
     }
 }
 
+/// The parameter that a condition of the base state determines, and the condition.
+fn automatic_condition(
+    item: &AutomaticItem,
+    ends: Option<(Id, Id)>,
+    names: &mut Names,
+) -> Resolved<(ParameterId, Condition)> {
+    let (name, place) = (&item.parameter.text, item.parameter.location.clone());
+    let Some(parameter) = names.find_parameter(name, 0) else {
+        let message = format!("`{name}` is not a parameter");
+        return Err(Diagnostic::new(place, message, "the name of a parameter"));
+    };
+    if names.parameters[parameter].whole {
+        let message = format!("`{name}` takes whole numbers");
+        let expected = "a parameter that varies continuously";
+        return Err(Diagnostic::new(place, message, expected));
+    }
+    let condition = Condition {
+        end: end(&item.place, ends, names)?,
+        residual: difference(&item.equation, names)?,
+        guard: Vec::new(),
+        location: item.equation.location.clone(),
+    };
+    Ok((parameter, condition))
+}
+
 fn integral(item: &IntegralCondition, names: &mut Names) -> Resolved<Integral> {
     let integrand = names.resolve(&item.integrand, Context::State)?;
     let value = names.resolve(&item.value, Context::Constant)?;
@@ -317,36 +339,12 @@ fn integral(item: &IntegralCondition, names: &mut Names) -> Resolved<Integral> {
     })
 }
 
-/// The end of the interval that `place` names.
-fn end(place: &Expression, ends: Option<(Id, Id)>, names: &mut Names) -> Resolved<End> {
-    let Some((lower, upper)) = ends else {
-        let message = "the model has no cross-stream coordinate";
-        return Err(
-            Diagnostic::new(place.location.clone(), message, "no conditions at walls")
-                .hint("declare one: `coordinates { x: periodic; y: 0..H; }`"),
-        );
-    };
-    let id = names.resolve(place, Context::Constant)?;
-    if id == lower {
-        Ok(End::Lower)
-    } else if id == upper {
-        Ok(End::Upper)
-    } else {
-        let message = "this is not an end of the interval";
-        Err(Diagnostic::new(
-            place.location.clone(),
-            message,
-            "an end as `coordinates` gives it",
-        ))
-    }
-}
-
 fn wall_conditions(
     wall: &WallItem,
     ends: Option<(Id, Id)>,
     names: &mut Names,
     mistakes: &mut Vec<Diagnostic>,
-    found: &mut Vec<Condition>,
+    list: &mut Vec<Condition>,
 ) {
     if let Some(expected) = names
         .coordinate
@@ -362,7 +360,7 @@ fn wall_conditions(
         return;
     }
     if let Some(end) = keep(end(&wall.place, ends, names), mistakes) {
-        conditions(&wall.conditions, end, &[], names, mistakes, found);
+        conditions(&wall.conditions, end, &[], names, mistakes, list);
     }
 }
 
@@ -372,7 +370,7 @@ fn conditions(
     guard: &[(ParameterId, usize)],
     names: &mut Names,
     mistakes: &mut Vec<Diagnostic>,
-    found: &mut Vec<Condition>,
+    list: &mut Vec<Condition>,
 ) {
     for item in items {
         match item {
@@ -393,7 +391,7 @@ fn conditions(
                     ));
                     continue;
                 }
-                found.push(Condition {
+                list.push(Condition {
                     end,
                     residual,
                     guard: guard.to_vec(),
@@ -409,7 +407,7 @@ fn conditions(
                 for (choice, branch) in order.into_iter().enumerate() {
                     let mut guard = guard.to_vec();
                     guard.push((parameter, choice));
-                    conditions(&branches[branch].1, end, &guard, names, mistakes, found);
+                    conditions(&branches[branch].1, end, &guard, names, mistakes, list);
                 }
             }
         }
@@ -433,7 +431,7 @@ fn mean(item: &MeanItem, names: &mut Names) -> Resolved<Closure> {
     })
 }
 
-fn typical(item: &TypicalItem, names: &mut Names) -> Resolved<Typical> {
+fn typical_of(item: &TypicalItem, names: &mut Names) -> Resolved<Typical> {
     let k = names.constant(&item.k)?;
     if k <= 0.0 {
         let message = "this is not a wavenumber";
@@ -450,9 +448,9 @@ fn typical(item: &TypicalItem, names: &mut Names) -> Resolved<Typical> {
     Ok(Typical { k, near })
 }
 
-fn output(item: &OutputItem, names: &mut Names) -> Resolved<Output> {
+fn output(item: &OutputItem, interval: Option<&Interval>, names: &mut Names) -> Resolved<Output> {
     let place = match &item.place {
-        Some(place) => Some(names.resolve(place, Context::Constant)?),
+        Some(place) => Some(place_inside(place, interval, names)?),
         None => None,
     };
     let body = names.resolve(&item.body, Context::State)?;

@@ -189,12 +189,11 @@ impl Reader<'_> {
         self.word(input, "near")?;
         self.punctuation(input, "=")?;
         let real = self.expression(input)?;
-        let imaginary = match self.peek_punctuation(input, ",") {
-            true => {
-                self.punctuation(input, ",")?;
-                Some(self.expression(input)?)
-            }
-            false => None,
+        let imaginary = if self.peek_punctuation(input, ",") {
+            self.punctuation(input, ",")?;
+            Some(self.expression(input)?)
+        } else {
+            None
         };
         self.end_of_statement(input)?;
         Ok(TypicalItem {

@@ -199,9 +199,10 @@ impl Reader<'_> {
                 ParameterDomain::Range(lower, upper)
             };
         }
-        let whole = match self.peek_word(input, "whole") {
-            true => Some(self.word(input, "whole")?),
-            false => None,
+        let whole = if self.peek_word(input, "whole") {
+            Some(self.word(input, "whole")?)
+        } else {
+            None
         };
         let doc = self.doc(input);
         self.punctuation(input, ";")?;

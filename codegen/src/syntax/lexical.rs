@@ -17,17 +17,17 @@ const WIDEST_INDENT: usize = 200;
 /// Mistakes after which the text is looked at no further.
 pub(super) const MOST_MISTAKES: usize = 200;
 
-/// Characters that people write in formulas and Rust's lexer does not know.
+const PRIME: &str = "write a {y}-derivative as d{y}(q); a perturbation needs no mark";
+
+/// Characters that people write in formulas and Rust's lexer does not know. In the hints, `{x}` and `{y}` stand for the names
+/// of the coordinates.
 const FOREIGN: [(char, &str); 12] = [
-    ('∂', "write derivatives as dx(q), dy(q), dt(q)"),
+    ('∂', "write derivatives as d{x}(q), d{y}(q), dt(q)"),
     (
         '∇',
-        "write the components with dx(q) and dy(q), for instance in a `let`",
+        "write the components with d{x}(q) and d{y}(q), for instance in a `let`",
     ),
-    (
-        '′',
-        "write a y-derivative as dy(q); a perturbation needs no mark",
-    ),
+    ('′', PRIME),
     ('²', "write a power as q^2"),
     ('³', "write a power as q^3"),
     (
@@ -38,7 +38,7 @@ const FOREIGN: [(char, &str); 12] = [
     ('×', "write a product with *"),
     ('−', "write a minus with the ASCII hyphen -"),
     ('√', "write a root as sqrt(q)"),
-    ('∫', "write an integral over y as integral(q)"),
+    ('∫', "write an integral over {y} as integral(q)"),
     ('½', "write the fraction as 1/2"),
 ];
 
@@ -66,6 +66,22 @@ pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
         scan.end();
     }
     scan.found
+}
+
+/// Names of the periodic and of the bounded coordinate as the block `coordinates` of a text declares them, as far as
+/// that can be told before the text is parsed.
+fn coordinates(text: &str) -> [Option<&str>; 2] {
+    let block = text.split("coordinates").nth(1);
+    let block = block.and_then(|after| after.split_once('{')?.1.split('}').next());
+    let mut names = [None, None];
+    for declaration in block.unwrap_or_default().split(';') {
+        if let Some((name, kind)) = declaration.split_once(':') {
+            let is_bounded = kind.trim() != "periodic";
+            let is_name = !name.trim().is_empty() && name.trim().chars().all(char::is_alphanumeric);
+            names[usize::from(is_bounded)] = is_name.then(|| name.trim());
+        }
+    }
+    names
 }
 
 /// The text of one file, read once from its start to its end.
@@ -245,7 +261,7 @@ impl Scan<'_> {
                 "a prime is not part of the language",
                 "an operator or `;`",
             )
-            .hint("write a y-derivative as dy(q); a perturbation needs no mark"),
+            .hint(self.named(PRIME)),
             '#' | '`' | '\\' | '$' | '@' | '~' | '?' => Diagnostic::new(
                 place,
                 format!("`{character}` is not part of the language"),
@@ -262,10 +278,17 @@ impl Scan<'_> {
                 }
                 let message = format!("`{character}` is not part of the language");
                 Diagnostic::new(place, message, "letters, digits and + - * / ^")
-                    .maybe_hint(hint.map(|(_, hint)| (*hint).to_owned()))
+                    .maybe_hint(hint.map(|(_, hint)| self.named(hint)))
             }
         };
         self.found.push(mistake);
+    }
+
+    /// A hint with the names of the coordinates for `{x}` and `{y}`.
+    fn named(&self, hint: &str) -> String {
+        let [periodic, bounded] = coordinates(self.text);
+        hint.replace("{x}", periodic.unwrap_or("x"))
+            .replace("{y}", bounded.unwrap_or("y"))
     }
 
     /// Reports what is open at the end of the file.

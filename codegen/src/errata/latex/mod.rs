@@ -330,9 +330,10 @@ impl<'a> Reader<'a> {
         let range = self.here();
         if self.command("partial") {
             let closed = self.sign('_') && self.argument().is_ok() && self.sign('|');
-            return match closed {
-                true => Ok(Some(Operator::Modulus)),
-                false => Err(self.unreadable("`|` goes round ∂ by the periodic coordinate", range)),
+            return if closed {
+                Ok(Some(Operator::Modulus))
+            } else {
+                Err(self.unreadable("`|` goes round ∂ by the periodic coordinate", range))
             };
         }
         if self.sign('_') {

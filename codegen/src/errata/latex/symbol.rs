@@ -216,19 +216,21 @@ impl Reader<'_> {
             below => format!("{name}0_{below}"),
         };
         let is_field = self.vocabulary.fields.iter().any(|field| field == name);
-        let derived =
-            |text: String| -> Read<String> {
-                let known = |q: &str| q == "t" || self.vocabulary.coordinates.contains(&q);
-                below
-                    .chars()
-                    .rev()
-                    .map(String::from)
-                    .try_fold(text, |inner, q| match known(&q) {
-                        true => Ok(format!("d{q}({inner})")),
-                        false => Err(self
-                            .unreadable(&format!("`{q}` below is no coordinate"), range.clone())),
-                    })
-            };
+        let derived = |text: String| -> Read<String> {
+            let known = |q: &str| q == "t" || self.vocabulary.coordinates.contains(&q);
+            below
+                .chars()
+                .rev()
+                .map(String::from)
+                .try_fold(text, |inner, q| {
+                    if known(&q) {
+                        Ok(format!("d{q}({inner})"))
+                    } else {
+                        Err(self
+                            .unreadable(&format!("`{q}` below is no coordinate"), range.clone()))
+                    }
+                })
+        };
         if marks.base {
             return Ok(based());
         }
