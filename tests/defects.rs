@@ -5,6 +5,7 @@ use landau_solver::model::C64;
 use landau_solver::problem::Problem;
 use landau_solver::study::Setup;
 use landau_solver::study::verify::residual_order;
+use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{Expansion, Selection, select};
 
 fn with_expansion<R>(
@@ -23,7 +24,7 @@ fn with_expansion<R>(
     let problem = setup.problem(&base).expect("a problem");
     let pair = |&(k, near): &(f64, Option<C64>)| {
         let selection = near.map_or(Selection::Leading, Selection::Near);
-        select(&problem, k, selection).expect("a mode")
+        select(&problem, WaveVector::along_x(k), selection).expect("a mode")
     };
     let pairs = modes.iter().map(pair).collect();
     let expansion = Expansion::to(&problem, pairs, order).expect("the expansion");

@@ -7,6 +7,7 @@ use landau_solver::model::C64;
 use landau_solver::spectrum::{EigenPair, follow, leading};
 use landau_solver::study::Setup;
 use landau_solver::study::sensitivity::parameters;
+use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::Envelope;
 use std::sync::Arc;
 
@@ -42,7 +43,9 @@ const CASES: [Case; 17] = [
 fn growth(setup: &Setup, pair: &EigenPair, k: f64) -> C64 {
     let base = setup.base(None).expect("a base state");
     let problem = setup.problem(&base).expect("a problem");
-    follow(&problem, k, pair).expect("the mode").c
+    follow(&problem, WaveVector::along_x(k), pair)
+        .expect("the mode")
+        .c
 }
 
 #[test]
@@ -59,7 +62,7 @@ fn check(model: &Arc<dyn Model>, name: &str, k: f64, m: usize, settings: &[&str]
     setup.set(&settings).expect("settings");
     let base = setup.base(None).expect("a base state");
     let problem = setup.problem(&base).expect("a problem");
-    let pair = leading(&problem, k).expect("a mode");
+    let pair = leading(&problem, WaveVector::along_x(k)).expect("a mode");
     let slope = Envelope::of(&problem, &pair).expect("its envelope").slope;
     let unit = pair.scale.max(pair.c.norm());
     let compare = |what: &str, found: C64, by_difference: C64, size: f64| {
@@ -123,7 +126,12 @@ fn extremum_with_a_wavenumber_in_a_condition() {
     setup.set(&settings).expect("settings");
     let base = setup.base(None).expect("a base state");
     let problem = setup.problem(&base).expect("a problem");
-    let growth = |k: f64| leading(&problem, k).expect("a mode").c.re;
+    let growth = |k: f64| {
+        leading(&problem, WaveVector::along_x(k))
+            .expect("a mode")
+            .c
+            .re
+    };
     // The crest of a parabola through three points.
     let h = 1e-3;
     let (low, middle, high) = (growth(k - h), growth(k), growth(k + h));

@@ -5,6 +5,7 @@ use approx::assert_relative_eq;
 use landau_solver::model::{FieldId, KernelId, Structure, evaluate};
 use landau_solver::space::Place;
 use landau_solver::study::Setup;
+use landau_solver::wavevector::WaveVector;
 use num_dual::{DualNum, second_derivative, second_partial_derivative};
 
 /// P (2.13) by hand: pressure, conductivity (with the square), dissipation, at e = 0.9.
@@ -45,7 +46,7 @@ fn linear_operator_of_the_bed() {
     let state = Setup::new(model.clone(), 50).base(None);
     let state = state.expect("a base state");
     for part in [0.015, 0.2, 0.45, 0.675, 0.9] {
-        let point = state.at(Place::at(part), 0.0);
+        let point = state.at(Place::at(part), WaveVector::MEAN);
         let at = |field, order| structure.base_value(&point, FieldId(field), order);
         let (n, n_y) = (at(0, 0), at(0, 1));
         let (t, t_y, t_yy) = (at(3, 0), at(3, 1), at(3, 2));

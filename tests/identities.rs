@@ -11,6 +11,7 @@ use landau_solver::series::Monomial;
 use landau_solver::space::Place;
 use landau_solver::study::Setup;
 use landau_solver::study::verify::{duality, residual_order, second_route};
+use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{self, Expansion, Selection};
 use std::sync::Arc;
 
@@ -80,14 +81,15 @@ fn order(problem: &Arc<Problem>, k: f64) -> f64 {
 }
 
 fn order_of(problem: &Arc<Problem>, k: f64, order: usize) -> f64 {
-    let pair = weakly::select(problem, k, Selection::Leading).expect("a mode");
+    let pair = weakly::select(problem, WaveVector::along_x(k), Selection::Leading).expect("a mode");
     let expansion = Expansion::to(problem, vec![pair], order).expect("the expansion");
     residual_order(&expansion).slope.unwrap_or(f64::NAN)
 }
 
 /// c2 by the forms against c2 by the series of the residual, relative to what it is the sum of.
 fn forms_against_series(problem: &Arc<Problem>, k: f64) -> f64 {
-    let point = weakly::point(problem, k, Selection::Leading).expect("a point");
+    let point =
+        weakly::point(problem, WaveVector::along_x(k), Selection::Leading).expect("a point");
     let expansion = Expansion::to(problem, vec![point.pair.clone()], 2).expect("second order");
     let cubic = Monomial {
         z: vec![2],
@@ -112,7 +114,9 @@ fn residual_falls_as_fourth_power() {
 fn duality_by_quadrature() {
     for (name, k, m, settings) in CASES {
         let worst = with_problem(&built(name), m, settings, |p| {
-            (0..6).map(|seed| duality(p, k, seed)).fold(0.0, f64::max)
+            (0..6)
+                .map(|seed| duality(p, WaveVector::along_x(k), seed))
+                .fold(0.0, f64::max)
         });
         assert!(worst < 1e-10, "{name} {settings:?}: {worst:.2e}");
     }
@@ -150,7 +154,7 @@ fn tape_equals_emitted_code() {
         assert_eq!(emitted.structure(), tape.structure(), "{name}");
         with_problem(&emitted, 20, &[], |problem| {
             for part in [0.1, 0.55, 0.965] {
-                let point = problem.base.at(Place::at(part), 1.3);
+                let point = problem.base.at(Place::at(part), WaveVector::along_x(1.3));
                 for kernel in [
                     KernelId::Base,
                     KernelId::Linear,
@@ -193,7 +197,8 @@ fn tape_equals_emitted_code() {
 fn adjoint_eigenvalue_along_the_sweep() {
     with_problem(&built("vibrated_bed"), 100, &[], |problem| {
         for k in [0.04, 0.07, 0.1, 0.13, 0.16, 0.174] {
-            let pair = landau_solver::spectrum::leading(problem, k).expect("a mode");
+            let pair =
+                landau_solver::spectrum::leading(problem, WaveVector::along_x(k)).expect("a mode");
             let adjoint = landau_solver::study::quadrature::adjoint_mode(problem, &pair)
                 .expect("its adjoint");
             let difference = (adjoint.c.conj() - pair.c).norm();
@@ -208,7 +213,8 @@ fn adjoint_difference_falls_with_resolution() {
     let settings: &[(&str, &str)] = &[("F", "16"), ("S", "400")];
     let difference = |m: usize| {
         with_problem(&built("vibrated_bed"), m, settings, |problem| {
-            let pair = landau_solver::spectrum::leading(problem, 0.1).expect("a mode");
+            let pair = landau_solver::spectrum::leading(problem, WaveVector::along_x(0.1))
+                .expect("a mode");
             let adjoint = landau_solver::study::quadrature::adjoint_mode(problem, &pair)
                 .expect("its adjoint");
             (adjoint.c.conj() - pair.c).norm()
@@ -342,7 +348,7 @@ fn signs_are_found(cases: &[Planting]) {
         let vanishes = |kernel: KernelId, coefficient: usize| {
             let values = with_problem(&model, m, settings, |problem| {
                 let places = problem.space().evenly(5).into_iter();
-                let states = places.map(|place| problem.base.at(place, k));
+                let states = places.map(|place| problem.base.at(place, WaveVector::along_x(k)));
                 let values = states.map(|at| evaluate(model.as_ref(), kernel, &at)[coefficient]);
                 values.collect::<Vec<f64>>()
             });
@@ -365,7 +371,7 @@ fn signs_are_found(cases: &[Planting]) {
         let broken = |planted: &Arc<dyn Model>| {
             with_problem(planted, m, settings, |problem| {
                 (0..4)
-                    .map(|seed| duality(problem, k, seed))
+                    .map(|seed| duality(problem, WaveVector::along_x(k), seed))
                     .fold(0.0, f64::max)
             }) > 1e-8
         };

@@ -7,6 +7,7 @@ use crate::support::{close, json, landau, number, written};
 use landau_solver::Model;
 use landau_solver::study::Setup;
 use landau_solver::study::verify::residual_order;
+use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{Expansion, Selection, select};
 use serde_json::Value;
 use std::sync::Arc;
@@ -246,7 +247,7 @@ fn expansion(text: &str, order: usize) -> Expansion {
     let setup = Setup::new(model, 20);
     let base = setup.base(None).expect("a base state");
     let problem = setup.problem(&base).expect("a problem");
-    let pair = select(&problem, 1.0, Selection::Leading).expect("a mode");
+    let pair = select(&problem, WaveVector::along_x(1.0), Selection::Leading).expect("a mode");
     Expansion::to(&problem, vec![pair], order).expect("the expansion")
 }
 

@@ -6,6 +6,7 @@ use landau_solver::spectrum;
 use landau_solver::study::row::Row;
 use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::{Axis, Setup, Silent};
+use landau_solver::wavevector::WaveVector;
 use std::sync::Arc;
 
 /// A real mode at k = 1 and a wave at k = 1.6, uncoupled. Exactly: σ_u = r1 − (1 − k²)², σ_w = r2 − (1.6² − k²)²/4 ± 1.5 i.
@@ -121,7 +122,7 @@ fn tall_beds_agree_with_their_full_spectra() {
         let problem = setup.problem(&base).expect("a problem");
         for row in along_k(&setup, from, to, 61, RowMode::Leading) {
             let k = row.coordinates[0];
-            let full = spectrum::eigenvalues(&problem, k).expect("a spectrum");
+            let full = spectrum::eigenvalues(&problem, WaveVector::along_x(k)).expect("a spectrum");
             let leading = row.leading.expect("a leading mode");
             let difference = (leading - full.values[0].re).abs();
             assert!(

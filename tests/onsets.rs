@@ -5,6 +5,7 @@ use crate::support::{built, close, json, landau, number, written};
 use landau_solver::spectrum::eigenvalues;
 use landau_solver::study::critical::{CriticalReport, Quantity, Question, Request, Tracking};
 use landau_solver::study::{Setup, Silent};
+use landau_solver::wavevector::WaveVector;
 use serde_json::Value;
 
 /// Two fields whose growth rates are r − (1 − k²)² and r + d − s (k2² − k²)².
@@ -410,7 +411,7 @@ fn pictures_draw_converged_values() {
     sizes.sort_by(f64::total_cmp);
     let middle = sizes[sizes.len() / 2];
     for (k, growth) in finite.iter().step_by(4) {
-        let spectrum = eigenvalues(&problem, *k).expect("a spectrum");
+        let spectrum = eigenvalues(&problem, WaveVector::along_x(*k)).expect("a spectrum");
         let parts = spectrum.values.iter().map(|c| (c.re - growth).abs());
         let distance = parts.fold(f64::INFINITY, f64::min);
         assert!(

@@ -4,6 +4,7 @@
 use crate::support::{built, close, json, landau, number, root};
 use landau_solver::model::End;
 use landau_solver::study::Setup;
+use landau_solver::wavevector::WaveVector;
 use rayon::prelude::*;
 
 fn critical(options: &str) -> f64 {
@@ -269,7 +270,7 @@ fn base_states() {
             let (panels, length) = (4000, ends[1] - ends[0]);
             let at = |i: usize| {
                 let y = ends[0] + length * i as f64 / (4 * panels) as f64;
-                value(&state.at(state.space.place(y), 0.0), "n", 0)
+                value(&state.at(state.space.place(y), WaveVector::MEAN), "n", 0)
             };
             let weight = |i: usize| match i % 4 {
                 0 if i == 0 || i == 4 * panels => 7.0,

@@ -4,6 +4,7 @@ use crate::support::{close, json, landau, number, root, written};
 use landau_solver::model::{End, FieldId, Model};
 use landau_solver::spectrum::leading;
 use landau_solver::study::Setup;
+use landau_solver::wavevector::WaveVector;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -92,7 +93,10 @@ fn blasius() {
         let wall = base.value(FieldId(5), base.space.end(End::Lower));
         close("curvature at the wall", wall, 0.332057336215, 1e-9);
         let problem = setup.problem(&base).expect("a problem");
-        leading(&problem, k).expect("a mode").c.re
+        leading(&problem, WaveVector::along_x(k))
+            .expect("a mode")
+            .c
+            .re
     };
     let (low, high) = (growth(518.5), growth(520.3));
     let critical = 518.5 - low * 1.8 / (high - low);

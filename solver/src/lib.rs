@@ -40,6 +40,7 @@ pub mod series;
 pub mod space;
 pub mod spectrum;
 pub mod study;
+pub mod wavevector;
 pub mod weakly;
 pub mod words;
 pub use landau_contract as model;

@@ -10,8 +10,9 @@ use landau_solver::error::{Error, Result};
 use landau_solver::file::Overwrite;
 use landau_solver::measured::Measured;
 use landau_solver::model::{Expression, FieldId};
+use landau_solver::study::Setup;
 use landau_solver::study::accuracy::Converged;
-use landau_solver::study::{Setup, check_wavenumber};
+use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{Pattern, PlaneField, Window, pattern as expand};
 use landau_solver::words;
 use serde_json::json;
@@ -19,7 +20,7 @@ use std::path::PathBuf;
 
 pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Result<()> {
     let (k, selection) = asked(setup, options.k, common)?;
-    check_wavenumber(k)?;
+    WaveVector::wave(k)?;
     let window = window(options)?;
     outputs::check_data(&options.out, &outputs::plane_formats())?;
     let paths = options.out.iter().map(PathBuf::as_path);

@@ -18,7 +18,8 @@ use landau_solver::study::shard::{Share, merge};
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::verify::Certificate;
-use landau_solver::study::{Axis, Setup, Silent, check_resolution, check_wavenumber};
+use landau_solver::study::{Axis, Setup, Silent, check_resolution};
+use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{Selection, Window, pattern};
 use landau_solver::words;
 use pyo3::prelude::*;
@@ -361,7 +362,7 @@ impl Core {
         let model = self.model.clone();
         watched(py, move |_| {
             let setup = setup(model, &set, resolution)?;
-            check_wavenumber(k)?;
+            WaveVector::wave(k)?;
             let (columns, rows) = points;
             let window = Window {
                 columns: columns.clamp(2, 4000),

@@ -4,6 +4,7 @@ use super::BaseState;
 use crate::error::{Error, Result};
 use crate::model::{End, Model, ResidualId, WithRounding};
 use crate::space::Place;
+use crate::wavevector::WaveVector;
 
 /// Places at which a closed base state is checked against its balances.
 const CHECKS: usize = 7;
@@ -126,7 +127,7 @@ impl BaseState {
         let structure = self.structure();
         let place = |check: usize| Place::at((check as f64 + 0.5) / CHECKS as f64);
         let points: Vec<_> = (0..CHECKS)
-            .map(|check| self.at(place(check), 0.0))
+            .map(|check| self.at(place(check), WaveVector::MEAN))
             .collect();
         // What a closed form cancels does not show in its value: each jet is as uncertain as at its largest.
         let sizes: Vec<f64> = structure

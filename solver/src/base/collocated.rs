@@ -11,6 +11,7 @@ use crate::model::{BaseJet, BaseRowId, End, Id, KernelId, Model, SolvedId, Struc
 use crate::numerics::{Failure, Linearised, Newton, System};
 use crate::parameters::Parameters;
 use crate::space::{Derivative, Layout, Place, Points, Quadrature, Space};
+use crate::wavevector::WaveVector;
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use std::collections::HashMap;
@@ -118,7 +119,7 @@ impl Collocated<'_> {
                 values.push(match start {
                     Some(state) => state.value(field, place),
                     None => {
-                        let point = template.at(place, 0.0);
+                        let point = template.at(place, WaveVector::MEAN);
                         let guesses = evaluate(self.model(), KernelId::Guess, &point);
                         guesses[solved.index()]
                     }
@@ -154,8 +155,13 @@ impl Collocated<'_> {
         let mut outputs: HashMap<BaseRowId, usize> = HashMap::new();
         let mut runs: Vec<Vec<Vec<f64>>> = Vec::new();
         for (places, own) in &self.groups {
-            let at =
-                |&place: &Place| evaluate(model.as_ref(), KernelId::Base, &state.at(place, 0.0));
+            let at = |&place: &Place| {
+                evaluate(
+                    model.as_ref(),
+                    KernelId::Base,
+                    &state.at(place, WaveVector::MEAN),
+                )
+            };
             outputs.extend(own.iter().map(|&row| (row, runs.len())));
             runs.push(places.iter().map(at).collect());
         }
@@ -196,7 +202,7 @@ impl Collocated<'_> {
             evaluate(
                 model.as_ref(),
                 KernelId::BaseIntegrals,
-                &state.at(*place, 0.0),
+                &state.at(*place, WaveVector::MEAN),
             )
         };
         let outputs: Vec<Vec<f64>> = nodes.iter().map(kernel).collect();

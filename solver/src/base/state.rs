@@ -7,6 +7,7 @@ use crate::model::{
 };
 use crate::parameters::Parameters;
 use crate::space::{Matrices, Place, Series, Space};
+use crate::wavevector::WaveVector;
 use std::fmt;
 use std::sync::Arc;
 
@@ -83,11 +84,11 @@ impl BaseState {
         self.model.structure()
     }
 
-    /// The point state that kernels read at a place; `k` enters the amplitude alone.
-    pub fn at(&self, place: Place, k: f64) -> Vec<f64> {
+    /// The point state that kernels read at a place; `q` enters the amplitude alone.
+    pub fn at(&self, place: Place, q: WaveVector) -> Vec<f64> {
         let structure = self.structure();
         let (y, values) = (self.space.y(place), &self.parameters.values);
-        let mut point = PointState::new(structure.state(), y, k, values);
+        let mut point = PointState::new(structure.state(), y, q.k(), values);
         let closed = evaluate(self.model.as_ref(), KernelId::Closed, point.values());
         point.set_closed(&closed);
         for (&field, series) in structure.base.solved.iter().zip(&self.series) {
@@ -101,12 +102,13 @@ impl BaseState {
 
     /// The point state at an end.
     pub fn at_end(&self, end: End) -> Vec<f64> {
-        self.at(self.space.end(end), 0.0)
+        self.at(self.space.end(end), WaveVector::MEAN)
     }
 
     /// A field at a place.
     pub fn value(&self, field: FieldId, place: Place) -> f64 {
-        self.structure().base_value(&self.at(place, 0.0), field, 0)
+        self.structure()
+            .base_value(&self.at(place, WaveVector::MEAN), field, 0)
     }
 
     /// Size of the last Chebyshev coefficients, relative to the largest, of the worst field.
@@ -137,7 +139,7 @@ impl BaseState {
     pub(super) fn check_ranges(&self, truncation: f64) -> Result<()> {
         let structure = self.structure();
         for place in self.space.evenly(65) {
-            let point = self.at(place, 0.0);
+            let point = self.at(place, WaveVector::MEAN);
             for (field, info) in structure.fields.pairs() {
                 let value = structure.base_value(&point, field, 0);
                 let slack = (1e-9 + 100.0 * truncation) * (1.0 + value.abs());

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::model::{C64, ClosureKind};
 use crate::numerics::dense::norm;
 use crate::pencil::Reduced;
+use crate::wavevector::WaveVector;
 
 /// What counts as zero, relative to the terms.
 const TOLERANCE: f64 = 1e-6;
@@ -32,7 +33,7 @@ impl Problem {
             .iter()
             .filter(|b| b.kind != ClosureKind::Claimed);
         let known: Vec<_> = known.cloned().collect();
-        let slow = Reduced::<f64>::new(with_borders(self.direct.pencil(0.0), &known))
+        let slow = Reduced::<f64>::new(with_borders(self.direct.pencil(WaveVector::MEAN), &known))
             .and_then(|pencil| pencil.eigenvectors());
         // A problem that is singular bears nothing out.
         let (zero, mut modes) = slow.map_or((0.0, Vec::new()), |(spectrum, modes)| {

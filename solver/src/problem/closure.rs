@@ -12,6 +12,7 @@ use crate::model::{
     BalanceId, C64, ClosureInfo, ClosureKind, FieldId, Id, Jet, KernelId, Table, evaluate,
 };
 use crate::space::{Derivative, Layout, Place, Space};
+use crate::wavevector::WaveVector;
 use std::ops::Range;
 
 /// One border: a row that closes the problem, and the column of its multiplier.
@@ -186,7 +187,11 @@ impl Closures<'_> {
     /// The weights of one closure at a place.
     fn at(&self, index: usize, place: Place) -> ClosureWeights<f64> {
         let kernel = KernelId::Closures(self.base.case);
-        let all = evaluate(self.base.model.as_ref(), kernel, &self.base.at(place, 0.0));
+        let all = evaluate(
+            self.base.model.as_ref(),
+            kernel,
+            &self.base.at(place, WaveVector::MEAN),
+        );
         read_closure(self.infos(), index, &all)
     }
 
@@ -278,7 +283,11 @@ impl Closures<'_> {
     /// −L of an unknown number, balance by balance.
     fn unknown_weights(&self, field: Option<FieldId>, place: Place) -> Table<BalanceId, f64> {
         let (model, structure) = (self.base.model.as_ref(), self.base.structure());
-        let coefficients = evaluate(model, KernelId::Linear, &self.base.at(place, 0.0));
+        let coefficients = evaluate(
+            model,
+            KernelId::Linear,
+            &self.base.at(place, WaveVector::MEAN),
+        );
         let mut weights = structure.balances.map(|_| 0.0);
         for (term, coefficient) in read_terms(&structure.linear, &coefficients) {
             if term.jet.t == 0 && Some(term.jet.of) == field {

@@ -7,6 +7,7 @@ use super::closure::Border;
 use crate::model::{BalanceId, C64, End, FieldId, Id, Jet, Table};
 use crate::numerics::dense::{Scalar, bordered};
 use crate::space::{Layout, Points, Space};
+use crate::wavevector::WaveVector;
 use faer::Mat;
 use std::collections::BTreeMap;
 
@@ -97,16 +98,15 @@ pub type Direct = LinearProblem<BalanceId, FieldId>;
 pub type Adjoint = LinearProblem<FieldId, BalanceId>;
 
 /// (i k)^x |k|^absx
-pub fn symbol<V>(jet: &Jet<V>, k: f64) -> C64 {
-    Turn::new(jet.x).factor() * (k.powi(i32::from(jet.x)) * k.abs().powi(i32::from(jet.absx)))
+pub fn symbol<V>(jet: &Jet<V>, q: WaveVector) -> C64 {
+    Turn::new(jet.x).factor() * q.size(jet)
 }
 
 impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
     /// The factor of a jet at wavenumber k in the solver's basis, its row divided by `row`.
-    fn symbol(&self, jet: &Jet<Column>, k: f64, row: Turn) -> C64 {
+    fn symbol(&self, jet: &Jet<Column>, k: WaveVector, row: Turn) -> C64 {
         let turn = Turn::new(jet.x) + self.column_turns[jet.of] - row;
-        let size = k.powi(i32::from(jet.x)) * k.abs().powi(i32::from(jet.absx));
-        turn.factor() * size
+        turn.factor() * k.size(jet)
     }
 
     /// What makes a wall's row real: i for a condition that is odd in the mirror.
@@ -162,22 +162,22 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
     }
 
     /// A combination of L and M0 at wavenumber k, to be applied or written out.
-    pub fn blocks<T: Scalar>(&self, k: f64, combination: Combination) -> Blocks<T> {
+    pub fn blocks<T: Scalar>(&self, k: WaveVector, combination: Combination) -> Blocks<T> {
         self.assemble(combination, &|jet, turn| self.symbol(jet, k, turn))
     }
 
     /// The same as a matrix.
-    pub fn matrix<T: Scalar>(&self, k: f64, combination: Combination) -> Mat<T> {
+    pub fn matrix<T: Scalar>(&self, k: WaveVector, combination: Combination) -> Mat<T> {
         self.blocks(k, combination).dense()
     }
 
     /// M0 at wavenumber k.
-    pub fn mass<T: Scalar>(&self, k: f64) -> Blocks<T> {
+    pub fn mass<T: Scalar>(&self, k: WaveVector) -> Blocks<T> {
         self.blocks(k, Combination::MASS)
     }
 
     /// L and M0 at wavenumber k, boundary conditions as rows of L with no mass.
-    pub fn pencil<T: Scalar>(&self, k: f64) -> (Mat<T>, Mat<T>) {
+    pub fn pencil<T: Scalar>(&self, k: WaveVector) -> (Mat<T>, Mat<T>) {
         (
             self.matrix(k, Combination::OPERATOR),
             self.matrix(k, Combination::MASS),
@@ -187,13 +187,13 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
     /// d^order/dk^order of a combination at k ≠ 0.
     pub fn wavenumber_derivative(
         &self,
-        k: f64,
+        k: WaveVector,
         combination: Combination,
         order: u8,
     ) -> Blocks<C64> {
         self.assemble(combination, &|jet, turn| {
             let power = f64::from(jet.x) + f64::from(jet.absx);
-            let factors = (0..order).map(|i| (power - f64::from(i)) / k);
+            let factors = (0..order).map(|i| (power - f64::from(i)) / k.k());
             self.symbol(jet, k, turn) * factors.product::<f64>()
         })
     }
@@ -275,14 +275,14 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
     pub(super) fn term_sizes(
         &self,
         row: Row,
-        k: f64,
+        k: WaveVector,
         chosen: impl Fn(&Jet<Column>) -> bool,
     ) -> Vec<f64> {
         let mut sums = vec![0.0; self.layout.rows[row].len];
         let own = self.terms.iter().filter(|term| term.row == row);
         for term in own.filter(|term| chosen(&term.jet)) {
             let jet = &term.jet;
-            let size = k.abs().powi(i32::from(jet.x + jet.absx))
+            let size = k.length().powi(i32::from(jet.x + jet.absx))
                 * self.space.rate().powi(i32::from(jet.y));
             for (sum, c) in sums.iter_mut().zip(&term.coefficients) {
                 *sum += c.abs() * size;
@@ -293,8 +293,13 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
 
     /// What a column of a given size adds at most to each row and then to each wall of L − c M0:
     /// Σ |coefficient| |k|^a (2/h)^d |c|^t size.
-    pub fn shares(&self, k: f64, c: C64, sizes: &Table<Column, f64>) -> Vec<Table<Column, f64>> {
-        let rates = [k.abs(), self.space.rate(), c.norm()];
+    pub fn shares(
+        &self,
+        k: WaveVector,
+        c: C64,
+        sizes: &Table<Column, f64>,
+    ) -> Vec<Table<Column, f64>> {
+        let rates = [k.length(), self.space.rate(), c.norm()];
         let size = |jet: &Jet<Column>| {
             let orders = [jet.x + jet.absx, jet.y, jet.t].map(i32::from);
             let powers = rates.iter().zip(orders).filter(|(_, order)| *order > 0);

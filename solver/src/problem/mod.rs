@@ -31,6 +31,7 @@ use crate::model::{
 use crate::numerics::Noise;
 use crate::numerics::dense::Scalar;
 use crate::space::{Layout, Place, Points, Space};
+use crate::wavevector::WaveVector;
 use faer::Mat;
 use linear::{CollocatedTerm, bordered_by, with_borders};
 use std::sync::{Arc, OnceLock};
@@ -75,7 +76,9 @@ impl<'b> States<'b> {
         let known = self.known.iter().position(|(other, _)| *other == points);
         let position = known.unwrap_or_else(|| {
             let places = self.space.places(points).into_iter();
-            let states = places.map(|place| self.base.at(place, 0.0)).collect();
+            let states = places
+                .map(|place| self.base.at(place, WaveVector::MEAN))
+                .collect();
             self.known.push((points, states));
             self.known.len() - 1
         });
@@ -120,7 +123,13 @@ impl Problem {
             noise: None,
         };
         let ids = problem.direct.layout.rows.ids();
-        let size = |row| median(problem.direct.term_sizes(row, 0.0, |jet| jet.t == 0));
+        let size = |row| {
+            median(
+                problem
+                    .direct
+                    .term_sizes(row, WaveVector::MEAN, |jet| jet.t == 0),
+            )
+        };
         let sizes: Table<BalanceId, f64> = ids.map(size).collect();
         for border in &mut problem.borders {
             border.balance(&problem.direct.layout, &sizes);
@@ -199,9 +208,9 @@ impl Problem {
     }
 
     /// σ M0 − L, the boundary conditions being rows of L without mass; bordered at k = 0.
-    pub fn shifted<T: Scalar>(&self, k: f64, shift: C64) -> Mat<T> {
+    pub fn shifted<T: Scalar>(&self, k: WaveVector, shift: C64) -> Mat<T> {
         let matrix = self.direct.matrix(k, Combination::shifted(shift));
-        if k == 0.0 {
+        if k.is_mean() {
             bordered_by(matrix, &self.borders, Border::corner)
         } else {
             matrix
@@ -210,7 +219,7 @@ impl Problem {
 
     /// L and M0 at k = 0 with the borders of the closures.
     pub fn bordered_pencil<T: Scalar>(&self) -> (Mat<T>, Mat<T>) {
-        with_borders(self.direct.pencil::<T>(0.0), &self.borders)
+        with_borders(self.direct.pencil::<T>(WaveVector::MEAN), &self.borders)
     }
 
     /// The same for the adjoint problem.
@@ -221,7 +230,7 @@ impl Problem {
         let adjoint = self.adjoint()?;
         let kept: Vec<usize> = self.borders.iter().map(|b| b.closure).collect();
         let borders = closure::adjoint(&self.base, &adjoint.space, &adjoint.layout, &kept)?;
-        let mut pencil = with_borders(adjoint.pencil(0.0), &borders);
+        let mut pencil = with_borders(adjoint.pencil(WaveVector::MEAN), &borders);
         // The corner of the direct problem, transposed, in the units of these borders.
         let n = adjoint.layout.size;
         for (j, of) in self.borders.iter().enumerate() {
@@ -247,7 +256,7 @@ impl Problem {
 
     /// The rate at which the balance of slowest terms changes its field: Σ |coefficient| |k|^a (2/h)^d over the
     /// mass, a median over the points.
-    pub fn rate(&self, k: f64) -> f64 {
+    pub fn rate(&self, k: WaveVector) -> f64 {
         // Terms of the fields whose time derivative the balance holds: others have units of their own.
         let rate = self.slowest(k, |row, jet| self.direct.has_mass(row, jet.of));
         if rate.is_finite() {
@@ -258,7 +267,7 @@ impl Problem {
     }
 
     /// The least rate over the balances, of the terms that are chosen; infinite where no balance has one.
-    fn slowest(&self, k: f64, chosen: impl Fn(BalanceId, &Jet) -> bool) -> f64 {
+    fn slowest(&self, k: WaveVector, chosen: impl Fn(BalanceId, &Jet) -> bool) -> f64 {
         let rates = self.direct.layout.rows.ids().map(|row| {
             let terms = self
                 .direct
@@ -367,7 +376,7 @@ fn gram(
         let out = evaluate(
             base.model.as_ref(),
             KernelId::Amplitude,
-            &base.at(place, 0.0),
+            &base.at(place, WaveVector::MEAN),
         );
         match read_measure(amplitude, &out) {
             Measure::Integral { weights, .. } => weights.iter().map(|w| measure * w).collect(),

@@ -9,6 +9,7 @@ use crate::model::{C64, FieldId, Table};
 use crate::numerics::dense::Scalar;
 use crate::numerics::{Applied, Noise};
 use crate::space::Block;
+use crate::wavevector::WaveVector;
 
 /// The least noise, in units of the machine's precision; without a cross-stream coordinate it is that.
 const LEAST: f64 = 125.0;
@@ -30,11 +31,11 @@ pub struct Known {
 impl Problem {
     /// Puts to zero, in a vector of the solver's basis, fields that count in no row to which something else contributes:
     /// known fields, a forcing, or fields that count next to these.
-    pub fn clear_absent(&self, k: f64, shift: C64, values: &mut [C64], known: Known) {
+    pub fn clear_absent(&self, k: WaveVector, shift: C64, values: &mut [C64], known: Known) {
         let columns = &self.direct.layout.columns;
         let largest = columns.map(|block| largest(block.of(values)));
         let mut shares = self.direct.shares(k, shift, &largest);
-        if k == 0.0 {
+        if k.is_mean() {
             shares.extend(self.closure_shares(&largest));
         }
         let present = self.present(known, &shares);

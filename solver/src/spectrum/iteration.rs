@@ -5,15 +5,16 @@ use crate::model::C64;
 use crate::numerics::dense::{Scalar, dot, norm, scalars};
 use crate::numerics::{Applied, beside, inverse_iteration};
 use crate::problem::{Combination, Problem, Turned};
+use crate::wavevector::WaveVector;
 
 /// The mode that continues `near`, if the iteration finds one.
-pub(super) fn continued(problem: &Problem, k: f64, near: &EigenPair) -> Option<EigenPair> {
+pub(super) fn continued(problem: &Problem, k: WaveVector, near: &EigenPair) -> Option<EigenPair> {
     let shift = predict(problem, k, near);
     refine(problem, k, shift, near.scale, &near.right, &near.left)
 }
 
 /// yᴴ L x / yᴴ M0 x with the vectors found nearby: off by the square of the distance.
-fn predict(problem: &Problem, k: f64, near: &EigenPair) -> C64 {
+fn predict(problem: &Problem, k: WaveVector, near: &EigenPair) -> C64 {
     let c = if problem.is_real() && near.c.im == 0.0 {
         quotient::<f64>(problem, k, near)
     } else {
@@ -22,7 +23,7 @@ fn predict(problem: &Problem, k: f64, near: &EigenPair) -> C64 {
     beside(if c.norm().is_finite() { c } else { near.c }, near.scale)
 }
 
-fn quotient<T: Scalar>(problem: &Problem, k: f64, near: &EigenPair) -> C64 {
+fn quotient<T: Scalar>(problem: &Problem, k: WaveVector, near: &EigenPair) -> C64 {
     let (right, left): (Vec<T>, Vec<T>) = (scalars(&near.right), scalars(&near.left));
     let operator = problem.direct.blocks::<T>(k, Combination::OPERATOR);
     let above = dot(&left, &operator.apply(&right));
@@ -40,7 +41,7 @@ pub fn likeness(a: &[C64], b: &[C64]) -> f64 {
 /// Two-sided inverse iteration with one factorisation at `shift`, in real arithmetic where that is possible.
 pub(super) fn refine(
     problem: &Problem,
-    k: f64,
+    k: WaveVector,
     shift: C64,
     scale: f64,
     right: &Turned,
@@ -57,7 +58,7 @@ pub(super) fn refine(
 
 fn iterate<T: Scalar>(
     problem: &Problem,
-    k: f64,
+    k: WaveVector,
     shift: C64,
     scale: f64,
     (right, left): (&Turned, &Turned),

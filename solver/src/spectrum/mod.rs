@@ -15,6 +15,7 @@ use crate::model::C64;
 use crate::numerics::beside;
 use crate::pencil::{Mode, Reduced};
 use crate::problem::{Problem, Turned};
+use crate::wavevector::WaveVector;
 use iteration::refine;
 
 /// Cosine between a mode and its continuation below which it counts as another mode.
@@ -29,7 +30,7 @@ const SIMPLE: f64 = 1e-7;
 #[derive(Clone, Debug)]
 pub struct EigenPair {
     /// Its wavenumber.
-    pub k: f64,
+    pub k: WaveVector,
     /// The eigenvalue, e^{ct}.
     pub c: C64,
     /// L x = c M0 x, boundary rows included.
@@ -44,8 +45,8 @@ pub struct EigenPair {
 ///
 /// # Errors
 /// A pencil that is singular for every c (a gauge that the spec does not name).
-pub fn eigenvalues(problem: &Problem, k: f64) -> Result<Spectrum> {
-    match (k == 0.0, problem.is_real()) {
+pub fn eigenvalues(problem: &Problem, k: WaveVector) -> Result<Spectrum> {
+    match (k.is_mean(), problem.is_real()) {
         (true, _) => Reduced::<f64>::new(problem.bordered_pencil())?.eigenvalues(),
         (false, true) => Reduced::<f64>::new(problem.direct.pencil(k))?.eigenvalues(),
         (false, false) => Reduced::<C64>::new(problem.direct.pencil(k))?.eigenvalues(),
@@ -56,9 +57,9 @@ pub fn eigenvalues(problem: &Problem, k: f64) -> Result<Spectrum> {
 ///
 /// # Errors
 /// As [`eigenvalues`], and where the model has no adjoint boundary conditions.
-pub fn adjoint_eigenvalues(problem: &Problem, k: f64) -> Result<Spectrum> {
+pub fn adjoint_eigenvalues(problem: &Problem, k: WaveVector) -> Result<Spectrum> {
     let adjoint = problem.adjoint()?;
-    match (k == 0.0, problem.is_real()) {
+    match (k.is_mean(), problem.is_real()) {
         (true, _) => Reduced::<f64>::new(problem.bordered_adjoint_pencil()?)?.eigenvalues(),
         (false, true) => Reduced::<f64>::new(adjoint.pencil(k))?.eigenvalues(),
         (false, false) => Reduced::<C64>::new(adjoint.pencil(k))?.eigenvalues(),
@@ -66,7 +67,7 @@ pub fn adjoint_eigenvalues(problem: &Problem, k: f64) -> Result<Spectrum> {
 }
 
 /// Eigenvalues with right eigenvectors in the solver's basis, by decreasing real part.
-fn eigenvectors(problem: &Problem, k: f64) -> Result<(Spectrum, Vec<Mode>)> {
+fn eigenvectors(problem: &Problem, k: WaveVector) -> Result<(Spectrum, Vec<Mode>)> {
     if problem.is_real() {
         Reduced::<f64>::new(problem.direct.pencil(k))?.eigenvectors()
     } else {
@@ -79,7 +80,7 @@ fn eigenvectors(problem: &Problem, k: f64) -> Result<(Spectrum, Vec<Mode>)> {
 /// # Errors
 /// A spectrum that cannot be computed, an eigenvalue that is not simple, or a mode that inverse iteration
 /// does not confirm.
-pub fn leading(problem: &Problem, k: f64) -> Result<EigenPair> {
+pub fn leading(problem: &Problem, k: WaveVector) -> Result<EigenPair> {
     let spectrum = eigenvalues(problem, k)?;
     let c = *spectrum.values.first().ok_or_else(no_modes)?;
     confirm(
@@ -94,7 +95,7 @@ pub fn leading(problem: &Problem, k: f64) -> Result<EigenPair> {
 ///
 /// # Errors
 /// As [`leading`].
-pub fn nearest(problem: &Problem, k: f64, target: C64) -> Result<EigenPair> {
+pub fn nearest(problem: &Problem, k: WaveVector, target: C64) -> Result<EigenPair> {
     nearest_in(problem, k, &eigenvalues(problem, k)?, target)
 }
 
@@ -104,7 +105,7 @@ pub fn nearest(problem: &Problem, k: f64, target: C64) -> Result<EigenPair> {
 /// As [`leading`].
 pub fn nearest_in(
     problem: &Problem,
-    k: f64,
+    k: WaveVector,
     spectrum: &Spectrum,
     target: C64,
 ) -> Result<EigenPair> {
@@ -125,7 +126,7 @@ pub fn nearest_in(
 ///
 /// # Errors
 /// Where no mode has a similar shape.
-pub fn follow(problem: &Problem, k: f64, near: &EigenPair) -> Result<EigenPair> {
+pub fn follow(problem: &Problem, k: WaveVector, near: &EigenPair) -> Result<EigenPair> {
     if near.right.len() == problem.direct.layout.size
         && let Some(pair) = iteration::continued(problem, k, near)
         && likeness(&near.right, &pair.right) > SAME_SHAPE
@@ -139,7 +140,7 @@ pub fn follow(problem: &Problem, k: f64, near: &EigenPair) -> Result<EigenPair> 
         .ok_or_else(no_modes)?;
     let overlap = likeness(&near.right, &mode.1);
     if overlap < SAME_SHAPE {
-        return Err(Error::Lost { k, overlap });
+        return Err(Error::Lost { k: k.k(), overlap });
     }
     confirm(problem, k, &spectrum, (mode.0, Turned(mode.1)))
 }
@@ -197,7 +198,7 @@ fn no_modes() -> Error {
 
 /// The scale of the slow part of a spectrum, or the rate of the slowest balance where the eigenvalues are zero to
 /// rounding beside it.
-pub fn unit_of_time(problem: &Problem, k: f64, spectrum: &Spectrum) -> f64 {
+pub fn unit_of_time(problem: &Problem, k: WaveVector, spectrum: &Spectrum) -> f64 {
     let (scale, rate) = (spectrum.scale(), problem.rate(k));
     if rate.is_finite() && scale <= ZERO * rate {
         rate
@@ -209,7 +210,7 @@ pub fn unit_of_time(problem: &Problem, k: f64, spectrum: &Spectrum) -> f64 {
 /// The mode after inverse iteration, where its eigenvalue is simple.
 fn confirm(
     problem: &Problem,
-    k: f64,
+    k: WaveVector,
     spectrum: &Spectrum,
     (c, right): (C64, Turned),
 ) -> Result<EigenPair> {
@@ -217,7 +218,7 @@ fn confirm(
     let gap = spectrum.gap(c);
     // A single eigenvalue is simple.
     if gap.is_finite() && gap <= SIMPLE * c.norm().max(scale) {
-        return Err(Error::NotSimple { c, k, gap });
+        return Err(Error::NotSimple { c, k: k.k(), gap });
     }
     // The left vector comes from the iteration itself; any start that is not orthogonal will do.
     let start = arbitrary(right.len());
@@ -227,6 +228,11 @@ fn confirm(
         } else {
             "it is not resolved: a larger M"
         };
-        Error::Unconfirmed { c, k, gap, advice }
+        Error::Unconfirmed {
+            c,
+            k: k.k(),
+            gap,
+            advice,
+        }
     })
 }

@@ -17,6 +17,7 @@ use crate::model::C64;
 use crate::numerics::beside;
 use crate::pencil::Spectrum;
 use crate::problem::Problem;
+use crate::wavevector::WaveVector;
 
 /// Eigenvalues, by decreasing growth rate, whose excess is measured.
 const RANKS: usize = 4;
@@ -75,7 +76,7 @@ impl Scout {
     ///
     /// # Errors
     /// A spectrum that cannot be computed.
-    pub fn gauge(&mut self, ground: Ground, k: f64, index: usize) -> Result<Leader> {
+    pub fn gauge(&mut self, ground: Ground, k: WaveVector, index: usize) -> Result<Leader> {
         let spectrum = eigenvalues(ground.fine, k)?;
         if let Some(Ok(coarse)) = ground.coarse.map(|coarse| eigenvalues(coarse, k)) {
             self.learn(index, &spectrum, &coarse);
@@ -109,7 +110,7 @@ impl Scout {
     pub fn leading(
         &self,
         ground: Ground,
-        k: f64,
+        k: WaveVector,
         index: usize,
         near: Option<&EigenPair>,
     ) -> Result<Leader> {
@@ -126,7 +127,7 @@ impl Scout {
     fn scouted(
         &self,
         ground: Ground,
-        k: f64,
+        k: WaveVector,
         index: usize,
         near: Option<&EigenPair>,
     ) -> Option<EigenPair> {
@@ -168,7 +169,7 @@ impl Scout {
 }
 
 /// The first eigenvalue of a full spectrum, with its mode.
-fn leader(problem: &Problem, k: f64, spectrum: &Spectrum) -> Result<Leader> {
+fn leader(problem: &Problem, k: WaveVector, spectrum: &Spectrum) -> Result<Leader> {
     let value = *spectrum.values.first().ok_or_else(no_modes)?;
     let start = arbitrary(problem.direct.layout.size);
     let pair = confirm(problem, k, spectrum, (value, start));

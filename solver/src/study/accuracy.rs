@@ -9,6 +9,7 @@ use crate::measured::{Decided, Measured};
 use crate::model::C64;
 use crate::problem::Problem;
 use crate::spectrum;
+use crate::wavevector::WaveVector;
 use crate::weakly::{self, AmplitudeEquation, CANCELLED_SUM, LandauPoint, Selection};
 use std::slice;
 use std::sync::Arc;
@@ -146,9 +147,9 @@ pub fn resonance(point: &LandauPoint, error0: f64) -> Result<Resonance> {
 
 /// The distances of 2 a0 from the eigenvalues at k = 0, and of 2 c0 from those at 2k.
 fn distances(problem: &Problem, point: &LandauPoint) -> Result<[f64; 2]> {
-    let second = spectrum::eigenvalues(problem, 2.0 * point.k())?;
+    let second = spectrum::eigenvalues(problem, 2.0 * point.pair.k)?;
     // A model whose mean modes are all closed by integrals has no mean spectrum to meet.
-    let mean_flow = match spectrum::eigenvalues(problem, 0.0) {
+    let mean_flow = match spectrum::eigenvalues(problem, WaveVector::MEAN) {
         Ok(mean) => mean.distance(C64::new(2.0 * point.c0.re, 0.0)),
         Err(Error::Input(message)) => return Err(Error::Input(message)),
         Err(_) => f64::INFINITY,

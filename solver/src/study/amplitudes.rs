@@ -5,7 +5,7 @@ use super::error_bars::{Companion, Companions};
 use super::orders::HIGHEST;
 use super::states::States;
 use super::verify::residual_order;
-use super::{Progress, Setup, check_wavenumber};
+use super::{Progress, Setup};
 use crate::error::{Error, Result};
 use crate::measured::Measured;
 use crate::model::C64;
@@ -13,6 +13,7 @@ use crate::numerics::dense::dot;
 use crate::problem::Problem;
 use crate::series::Monomial;
 use crate::spectrum::{self, EigenPair};
+use crate::wavevector::WaveVector;
 use crate::weakly::{
     self, AmplitudeSystem, CriticalMode, Distance, Expansion, Selection, multiplier_error, power,
     select,
@@ -100,7 +101,7 @@ impl AmplitudesReport {
             )));
         }
         for choice in choices {
-            check_wavenumber(choice.k.abs())?;
+            WaveVector::either_way(choice.k)?;
         }
         let steps = choices.len() + order + 3;
         progress.begin(steps);
@@ -123,7 +124,7 @@ impl AmplitudesReport {
         let modes: Vec<(f64, C64)> = expansion
             .modes
             .iter()
-            .map(|m| (m.pair.k, m.pair.c))
+            .map(|m| (m.pair.k.k(), m.pair.c))
             .collect();
         // Two orders more: one of them may have no terms.
         expansion.advance()?;
@@ -209,7 +210,7 @@ impl AmplitudesReport {
             .distances
             .iter()
             .map(|d| {
-                json!({"z": d.monomial.z, "conj": d.monomial.conj, "q": [d.q], "distance": words::number(d.distance)})
+                json!({"z": d.monomial.z, "conj": d.monomial.conj, "q": [d.q.k()], "distance": words::number(d.distance)})
             })
             .collect();
         json!({
@@ -250,11 +251,12 @@ fn pairs(
 ) -> Result<Vec<EigenPair>> {
     let mut pairs: Vec<EigenPair> = Vec::new();
     for choice in choices {
-        let opposite = pairs.iter().find(|pair| pair.k == -choice.k);
+        let k = WaveVector::either_way(choice.k)?;
+        let opposite = pairs.iter().find(|pair| pair.k == -k);
         let pair = match (choice.near, opposite) {
-            (Some(target), _) => select(problem, choice.k, Selection::Near(target))?,
+            (Some(target), _) => select(problem, k, Selection::Near(target))?,
             (None, Some(pair)) if problem.is_real() => spectrum::mirror_image(problem, pair),
-            (None, _) => select(problem, choice.k, Selection::Leading)?,
+            (None, _) => select(problem, k, Selection::Leading)?,
         };
         pairs.push(pair);
         progress.advance(1);

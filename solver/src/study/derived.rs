@@ -107,7 +107,7 @@ impl Derived {
             Source::Base(expression, at) => {
                 let (problem, base) = (&point.problem, &point.problem.base);
                 let structure = problem.structure();
-                let value = |place| expression.at_base(structure, &base.at(place, point.k()));
+                let value = |place| expression.at_base(structure, &base.at(place, point.pair.k));
                 match at {
                     Location::End(end) => value(problem.space().end(*end)),
                     Location::Integral => {

@@ -132,7 +132,7 @@ impl Kind {
                 let stretch = noise.stream(WAVENUMBER).factor(0);
                 let followed = pairs
                     .iter()
-                    .map(|pair| spectrum::follow(&disturbed, pair.k * stretch, pair));
+                    .map(|pair| spectrum::follow(&disturbed, stretch * pair.k, pair));
                 return Ok(Some(Companion {
                     pairs: followed.collect::<Result<_>>()?,
                     problem: disturbed,

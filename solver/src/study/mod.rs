@@ -8,6 +8,7 @@ pub mod derived;
 pub mod error_bars;
 pub mod identity;
 mod journal;
+use crate::wavevector::WaveVector;
 use bases::Bases;
 pub use journal::journal_path;
 pub use progress::{Progress, Silent};
@@ -208,7 +209,7 @@ impl Setup {
     /// A value out of the parameter's range, or not finite.
     pub fn accepts(&self, axis: Axis, value: f64) -> Result<()> {
         match axis {
-            Axis::Wavenumber => check_wavenumber(value),
+            Axis::Wavenumber => WaveVector::wave(value).map(|_| ()),
             Axis::Parameter(parameter) => {
                 let mut parameters = self.parameters.clone();
                 parameters.set(self.model.structure(), parameter, value)
@@ -241,17 +242,17 @@ impl Setup {
         Problem::new(base, self.effective_resolution()).map(Arc::new)
     }
 
-    /// The Landau point of a selected mode.
+    /// The Landau point of a selected mode at a wavenumber k.
     ///
     /// # Errors
-    /// Whatever fails on the way.
+    /// A k that is no positive number; whatever fails on the way.
     pub fn point(
         &self,
         base: &Arc<BaseState>,
         k: f64,
         selection: Selection,
     ) -> Result<LandauPoint> {
-        weakly::point(&self.problem(base)?, k, selection)?.conserving()
+        weakly::point(&self.problem(base)?, WaveVector::wave(k)?, selection)?.conserving()
     }
 }
 
@@ -274,18 +275,5 @@ pub fn check_resolution(resolution: usize) -> Result<()> {
     }
     Err(Error::input(format!(
         "-M {resolution} is out of range: -M accepts 4 to 1000"
-    )))
-}
-
-/// Refuses a wavenumber that cannot be one.
-///
-/// # Errors
-/// Zero, negative or not finite.
-pub fn check_wavenumber(k: f64) -> Result<()> {
-    if k.is_finite() && k > 0.0 {
-        return Ok(());
-    }
-    Err(Error::input(format!(
-        "k = {k} is not a wavenumber: it has to be a positive number"
     )))
 }

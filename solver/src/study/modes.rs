@@ -1,12 +1,13 @@
 //! The modes of the expansion as profiles: what `point --plot` draws and `--out` stores.
 
+use super::Setup;
 use super::accuracy::Converged;
 use super::quadrature::{AdjointMode, adjoint_mode};
-use super::{Setup, check_wavenumber};
 use crate::error::Result;
 use crate::model::{C64, Jet};
 use crate::problem::{LinearProblem, Problem};
 use crate::space::Place;
+use crate::wavevector::WaveVector;
 use crate::weakly::{Expansion, Mode, Selection};
 use serde_json::Value;
 
@@ -45,7 +46,7 @@ impl Modes {
     /// # Errors
     /// A mode that is not found, a resonance, a coefficient that is not converged.
     pub fn compute(setup: &Setup, k: f64, selection: Selection) -> Result<Self> {
-        check_wavenumber(k)?;
+        WaveVector::wave(k)?;
         let base = setup.base(None)?;
         let point = Converged::new(setup, &base, k, selection)?.point;
         let problem = point.problem.as_ref();

@@ -80,7 +80,7 @@ impl Ingredients {
             .into_iter()
             .find(|size| size.abs() > 10.0 * critical.error);
         let rounding = ROUNDING * critical.scale;
-        let k = root.pair.k;
+        let k = root.pair.k.length();
         let point = weakly::from_pair(problem, root.pair.clone()).and_then(LandauPoint::conserving);
         let sum = point.as_ref().map_or(0.0, LandauPoint::size);
         Ok(Ingredients {
@@ -97,7 +97,7 @@ impl Ingredients {
     /// At a wavenumber next to that of a root, with the same derivative along the parameter.
     fn nudged(&self, root: &Root) -> Result<Self> {
         let problem = &root.site.problem;
-        let pair = spectrum::follow(problem, root.pair.k * (1.0 + NUDGE), &root.pair)?;
+        let pair = spectrum::follow(problem, (1.0 + NUDGE) * root.pair.k, &root.pair)?;
         let envelope = Envelope::of(problem, &pair)?;
         let exact = |value: C64| Measured::new(value, 0.0);
         Ok(Ingredients {

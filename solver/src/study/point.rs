@@ -9,12 +9,13 @@ use super::accuracy::{
 use super::amplitudes::{errors, small_divisors};
 use super::error_bars::Companions;
 use super::orders::check_order;
-use super::{Setup, Silent, check_wavenumber, sensitivity};
+use super::{Setup, Silent, sensitivity};
 use crate::error::{Error, Result};
 use crate::measured::{Decided, Measured};
 use crate::model::C64;
 use crate::series::Monomial;
 use crate::spectrum::mirror_image;
+use crate::wavevector::WaveVector;
 use crate::weakly::{
     self, AmplitudeEquation, Bifurcation, Distance, Envelope, Expansion, LandauPoint, Selection,
     Waves, benjamin_feir, multiplier_error, outputs,
@@ -95,7 +96,7 @@ impl PointReport {
     /// A mode that is not found, a resonance, a coefficient that is not converged, anything that is no
     /// finite number.
     pub fn compute(setup: &Setup, k: f64, selection: Selection, order: usize) -> Result<Self> {
-        check_wavenumber(k)?;
+        WaveVector::wave(k)?;
         check_order(order)?;
         let base = setup.base(None)?;
         let point = &setup.point(&base, k, selection)?;
@@ -242,7 +243,10 @@ fn longer(
     };
     if order == 3 {
         let [mean, second] = point.distances();
-        let solved = [([1], [1], 0.0, mean), ([2], [0], 2.0 * point.k(), second)];
+        let solved = [
+            ([1], [1], WaveVector::MEAN, mean),
+            ([2], [0], 2.0 * point.pair.k, second),
+        ];
         let distances = solved.map(|(z, conj, q, distance)| Distance {
             monomial: Monomial {
                 z: z.to_vec(),

@@ -3,6 +3,7 @@
 use super::Setup;
 use crate::error::{Error, Result};
 use crate::model::FieldId;
+use crate::wavevector::WaveVector;
 use crate::words;
 use serde_json::{Map, Value, json};
 use std::fmt;
@@ -53,7 +54,10 @@ impl BaseReport {
         let state = setup.base(None)?;
         let structure = setup.model.structure();
         let places = state.space.evenly(points);
-        let states: Vec<Vec<f64>> = places.iter().map(|&place| state.at(place, 0.0)).collect();
+        let states: Vec<Vec<f64>> = places
+            .iter()
+            .map(|&place| state.at(place, WaveVector::MEAN))
+            .collect();
         let profile = |field: FieldId| {
             let values = states
                 .iter()

@@ -54,7 +54,7 @@ pub fn second_landau(point: &LandauPoint, adjoint: &AdjointMode) -> Result<Optio
         return Ok(None);
     }
     let (structure, layout) = (problem.structure(), &problem.adjoint()?.layout);
-    let k = point.k();
+    let k = point.pair.k;
     let Quadrature { points, nodes } = problem.quadrature();
     let (first, mean, second) = (&point.fundamental, &point.mean, &point.second);
     let conjugate = first.conjugate();

@@ -9,6 +9,7 @@ use crate::model::C64;
 use crate::numerics::Noise;
 use crate::problem::Problem;
 use crate::spectrum::{Spectrum, adjoint_eigenvalues, eigenvalues, unit_of_time};
+use crate::wavevector::WaveVector;
 use crate::words;
 use serde_json::{Value, json};
 use std::fmt;
@@ -51,12 +52,13 @@ impl SpectrumReport {
                 "--k {k}: a wavenumber is a number from 0 on"
             )));
         }
+        let q = WaveVector::along_x(k);
         let base = setup.base(None)?;
         let problem = setup.problem(&base)?;
-        let direct = eigenvalues(&problem, k)?;
-        let adjoint = adjoint_eigenvalues(&problem, k).map_err(|e| e.to_string());
-        let scale = unit_of_time(&problem, k, &direct);
-        let errors = errors(setup, &problem, k, &direct, scale)?;
+        let direct = eigenvalues(&problem, q)?;
+        let adjoint = adjoint_eigenvalues(&problem, q).map_err(|e| e.to_string());
+        let scale = unit_of_time(&problem, q, &direct);
+        let errors = errors(setup, &problem, q, &direct, scale)?;
         let structure = setup.model.structure();
         Ok(SpectrumReport {
             model: structure.name.clone(),
@@ -114,7 +116,7 @@ impl SpectrumReport {
 fn errors(
     setup: &Setup,
     problem: &Problem,
-    k: f64,
+    q: WaveVector,
     direct: &Spectrum,
     scale: f64,
 ) -> Result<Vec<f64>> {
@@ -125,7 +127,7 @@ fn errors(
             (problem.disturbed(Noise::new(0)), weight)
         }
     };
-    let there = eigenvalues(&beside, k)?;
+    let there = eigenvalues(&beside, q)?;
     let rounding = |c: C64| 1e-14 * scale.max(c.norm());
     let error = |&c: &C64| (weight * there.distance(c)).max(rounding(c));
     let errors: Vec<f64> = direct.values.iter().map(error).collect();
@@ -133,7 +135,7 @@ fn errors(
     if let Some((c, error)) = leading
         && !converged(*c, *error, scale)
     {
-        let what = format!("the leading eigenvalue at k = {k}");
+        let what = format!("the leading eigenvalue at k = {q}");
         let how_far = format!("another M moves it by {error:.1e}");
         return Err(Error::unresolved(what, problem.resolution, how_far));
     }

@@ -12,7 +12,7 @@ use super::derived::Derived;
 use super::identity::SweepIdentity;
 use super::journal::Journal;
 use super::row::{COLUMNS, Row, Table, table};
-use super::{Axis, Progress, Setup, check_wavenumber};
+use super::{Axis, Progress, Setup};
 use crate::base::BaseState;
 use crate::error::{Error, Result};
 use crate::file::{Overwrite, destination};
@@ -23,6 +23,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
+use crate::wavevector::WaveVector;
 use station::Collocations;
 
 /// Places of the first axis that one worker computes at a time.
@@ -92,7 +93,9 @@ impl<'s> Sweep<'s> {
             setup.check_free(range.axis, k)?;
             for &value in &range.values {
                 match range.axis {
-                    Axis::Wavenumber => check_wavenumber(value)?,
+                    Axis::Wavenumber => {
+                        WaveVector::wave(value)?;
+                    }
                     axis => setup.accepts(axis, value)?,
                 }
             }
@@ -106,7 +109,7 @@ impl<'s> Sweep<'s> {
         }
         if !ranges.iter().any(|r| r.axis == Axis::Wavenumber) {
             let k = k.ok_or_else(|| Error::input("no axis is k: give the wavenumber, with --k"))?;
-            check_wavenumber(k)?;
+            WaveVector::wave(k)?;
         }
         Ok(Sweep {
             setup,

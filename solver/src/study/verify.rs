@@ -4,13 +4,14 @@ mod adjointness;
 mod forms;
 mod order;
 
+use super::Setup;
 use super::accuracy::{SINGULAR, accuracy, resonance, slow_rate};
 use super::orders::check_order;
 use super::quadrature::{adjoint_mode, second_landau};
-use super::{Setup, check_wavenumber};
 use crate::error::{Error, Result};
 use crate::problem::{Problem, Profile};
 use crate::series::Monomial;
+use crate::wavevector::WaveVector;
 use crate::weakly::{self, Expansion, LEFT_OVER, LandauPoint, Selection};
 use crate::words;
 use serde_json::{Value, json};
@@ -183,7 +184,7 @@ impl Certificate {
     /// # Errors
     /// A point that cannot be computed at all.
     pub fn compute(setup: &Setup, k: f64, selection: Selection, order: usize) -> Result<Self> {
-        check_wavenumber(k)?;
+        let k = WaveVector::wave(k)?;
         check_order(order)?;
         let base = setup.base(None)?;
         let mut checks = Vec::new();
@@ -198,7 +199,7 @@ impl Certificate {
         Ok(Certificate {
             model: structure.name.clone(),
             title: structure.title.clone(),
-            k,
+            k: k.k(),
             resolution: setup.resolution,
             has_coordinate: structure.coordinate.is_some(),
             checks,

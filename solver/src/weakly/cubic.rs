@@ -19,6 +19,7 @@ use crate::numerics::dense::{dot, norm};
 use crate::problem::{Problem, Turned};
 use crate::space::Points;
 use crate::spectrum::{self, EigenPair};
+use crate::wavevector::WaveVector;
 use std::sync::Arc;
 
 /// Below this part of what its terms would sum to were they not to cancel, c2 is rounding.
@@ -62,7 +63,7 @@ pub struct LandauPoint {
 ///
 /// # Errors
 /// A mode that is not found, a resonance.
-pub fn point(problem: &Arc<Problem>, k: f64, selection: Selection) -> Result<LandauPoint> {
+pub fn point(problem: &Arc<Problem>, k: WaveVector, selection: Selection) -> Result<LandauPoint> {
     from_pair(problem, select(problem, k, selection)?)
 }
 
@@ -70,7 +71,7 @@ pub fn point(problem: &Arc<Problem>, k: f64, selection: Selection) -> Result<Lan
 ///
 /// # Errors
 /// A mode that is not found.
-pub fn select(problem: &Problem, k: f64, selection: Selection) -> Result<EigenPair> {
+pub fn select(problem: &Problem, k: WaveVector, selection: Selection) -> Result<EigenPair> {
     match selection {
         Selection::Leading => spectrum::leading(problem, k),
         Selection::Near(target) => spectrum::nearest(problem, k, target),
@@ -82,7 +83,7 @@ pub fn select(problem: &Problem, k: f64, selection: Selection) -> Result<EigenPa
 ///
 /// # Errors
 /// As [`point`].
-pub fn warm_point(problem: &Arc<Problem>, k: f64, near: &EigenPair) -> Result<LandauPoint> {
+pub fn warm_point(problem: &Arc<Problem>, k: WaveVector, near: &EigenPair) -> Result<LandauPoint> {
     point(problem, k, Selection::Like(near))
 }
 
@@ -125,7 +126,7 @@ fn third_order(
 ) -> Result<ThirdOrder> {
     let arithmetic = arithmetic(problem, &[pair.c]);
     let uncancelled = || Some(mean_forcing(problem, fundamental, Some(turned)));
-    let respond = |q: f64, shift: C64, forcing: RightSide| {
+    let respond = |q: WaveVector, shift: C64, forcing: RightSide| {
         forcing.check_range()?;
         let question = Question {
             q,
@@ -133,13 +134,13 @@ fn third_order(
             forcing,
             arithmetic,
             order: 2,
-            is_real: q == 0.0,
+            is_real: q.is_mean(),
             borders: &[],
             uncancelled: &uncancelled,
         };
         question
             .answer(problem)
-            .ok_or_else(|| singular(pair.k, q == 0.0))
+            .ok_or_else(|| singular(pair.k, q.is_mean()))
     };
     let x = Factor::new(problem, fundamental.clone(), weight);
     let conjugate = x.conjugate();
@@ -147,7 +148,7 @@ fn third_order(
         equations: mean_forcing(problem, fundamental, weight),
         closures: integrals::second_order(problem, fundamental, arithmetic, weight),
     };
-    let mean = respond(0.0, C64::new(2.0 * pair.c.re, 0.0), forcing)?;
+    let mean = respond(WaveVector::MEAN, C64::new(2.0 * pair.c.re, 0.0), forcing)?;
     let forcing = RightSide {
         equations: product(problem, &[&x, &x], 1.0),
         closures: Vec::new(),
@@ -189,7 +190,7 @@ pub fn fundamental(problem: &Problem, pair: &EigenPair) -> Result<Mode> {
     Ok(Mode::new(pair.k, values, rate))
 }
 
-fn singular(k: f64, mean: bool) -> Error {
+fn singular(k: WaveVector, mean: bool) -> Error {
     let distance = None;
     match mean {
         true => Error::OpenMean {
@@ -198,8 +199,8 @@ fn singular(k: f64, mean: bool) -> Error {
         },
         false => Error::Resonance {
             of: "X[2;2]".to_owned(),
-            q: 2.0 * k,
-            modes: vec![k],
+            q: 2.0 * k.k(),
+            modes: vec![k.k()],
             distance,
         },
     }
@@ -227,7 +228,7 @@ impl LandauPoint {
 
     /// The wavenumber.
     pub fn k(&self) -> f64 {
-        self.pair.k
+        self.pair.k.k()
     }
 
     /// How far the problems of X[0;2] and X[2;2] are from singularity.

@@ -20,6 +20,7 @@ use crate::numerics::dense::dot;
 use crate::problem::{Problem, Profile, Turned};
 use crate::series::{Arithmetic, Monomial, Monomials};
 use crate::spectrum::EigenPair;
+use crate::wavevector::WaveVector;
 use std::sync::Arc;
 
 /// Wavenumbers that differ by a smaller part of the largest are one.
@@ -76,7 +77,7 @@ impl Expansion {
                 pair,
             });
         }
-        let k = modes.first().map_or(0.0, |mode| mode.pair.k);
+        let k = modes.first().map_or(WaveVector::MEAN, |mode| mode.pair.k);
         let mut expansion = Expansion {
             problem: problem.clone(),
             system: AmplitudeSystem::linear(&rates),
@@ -140,13 +141,13 @@ impl Expansion {
     }
 
     /// q_α, with the wavenumbers of modes to the last digit.
-    pub fn wavenumber(&self, alpha: &Monomial) -> f64 {
-        let own = || self.modes.iter().map(|mode| mode.pair.k);
-        let q: f64 = alpha.differences().zip(own()).map(|(d, q)| d * q).sum();
-        let largest = own().fold(0.0, |m: f64, q| m.max(q.abs()));
-        let known = own().chain(own().map(|q| -q)).chain([0.0]);
-        let same = |other: &f64| (q - other).abs() <= SAME * largest;
-        known.into_iter().find(same).unwrap_or(q)
+    pub fn wavevector(&self, alpha: &Monomial) -> WaveVector {
+        let modes = || self.modes.iter().map(|mode| mode.pair.k);
+        let q: WaveVector = alpha.differences().zip(modes()).map(|(d, q)| d * q).sum();
+        let longest = modes().map(WaveVector::length).fold(0.0, f64::max);
+        let mut exact = modes().chain(modes().map(|q| -q)).chain([WaveVector::MEAN]);
+        let exact = exact.find(|candidate| q.is_same(*candidate, longest));
+        exact.unwrap_or(q)
     }
 
     /// σ_α
@@ -161,7 +162,7 @@ impl Expansion {
 
     /// The modes whose amplitude equations a monomial enters.
     fn resonant(&self, alpha: &Monomial) -> Vec<usize> {
-        let (q, shift) = (self.wavenumber(alpha), self.shift(alpha));
+        let (q, shift) = (self.wavevector(alpha), self.shift(alpha));
         let frequency = |mode: &CriticalMode| {
             let size = mode.pair.c.norm().max(mode.pair.scale);
             let own = mode.pair.c.im;
@@ -230,7 +231,7 @@ impl Expansion {
         let mirrored = match (resonant.is_empty(), conjugate.is_empty()) {
             (false, _) => false,
             (true, false) => true,
-            (true, true) => self.wavenumber(&own) < 0.0,
+            (true, true) => self.wavevector(&own).is_reversed(),
         };
         Posed {
             alpha: if mirrored { other } else { own },
@@ -250,7 +251,7 @@ impl Expansion {
         let known = |(index, posed): (usize, &Posed)| {
             let rate = self.known_rate(&posed.alpha)?;
             let still = Profile::zero(rate.len());
-            let mode = Mode::new(self.wavenumber(&posed.alpha), still, rate);
+            let mode = Mode::new(self.wavevector(&posed.alpha), still, rate);
             let mode = if posed.mirrored {
                 mode.conjugate()
             } else {
@@ -281,7 +282,7 @@ impl Expansion {
         });
         let borders: Vec<_> = borders.collect();
         let question = Question {
-            q: self.wavenumber(alpha),
+            q: self.wavevector(alpha),
             shift: self.shift(alpha),
             forcing,
             arithmetic: self.arithmetic,
@@ -311,7 +312,10 @@ impl Expansion {
     /// G of a monomial with weights on all jets that let nothing cancel, in the solver's basis; the known part of the
     /// rates is left out.
     fn uncancelled(&self, alpha: &Monomial) -> Option<Turned> {
-        let k = self.modes.first().map_or(0.0, |mode| mode.pair.k);
+        let k = self
+            .modes
+            .first()
+            .map_or(WaveVector::MEAN, |mode| mode.pair.k);
         let prepare = Preparation::new(&self.problem, k, Arithmetic::Complex, Some(turned));
         let mut forcing = Forcing::new(&prepare).ok()?;
         let mut monomials = Monomials::new(self.modes.len());
@@ -395,7 +399,7 @@ impl Expansion {
     pub fn distances(&self) -> Vec<Distance> {
         let distance = |(monomial, response): &(Monomial, Response)| Distance {
             monomial: monomial.clone(),
-            q: self.wavenumber(monomial),
+            q: self.wavevector(monomial),
             shift: self.shift(monomial),
             distance: response.distance(&self.problem),
         };
@@ -404,17 +408,17 @@ impl Expansion {
 
     fn singular(&self, alpha: &Monomial) -> Error {
         let (q, of) = (
-            self.wavenumber(alpha),
+            self.wavevector(alpha),
             format!("the coefficient of {}", alpha.name()),
         );
         let distance = None;
-        if q == 0.0 {
+        if q.is_mean() {
             return Error::OpenMean { of, distance };
         }
         Error::Resonance {
             of,
-            q,
-            modes: self.modes.iter().map(|mode| mode.pair.k).collect(),
+            q: q.k(),
+            modes: self.modes.iter().map(|mode| mode.pair.k.k()).collect(),
             distance,
         }
     }
@@ -426,7 +430,7 @@ pub struct Distance {
     /// The coefficient that it was solved for.
     pub monomial: Monomial,
     /// Its wavenumber.
-    pub q: f64,
+    pub q: WaveVector,
     /// σ_α
     pub shift: C64,
     /// Of σ_α from the spectrum of L at q.
@@ -437,13 +441,13 @@ impl Distance {
     /// What is near, and the command that gives it an amplitude of its own beside those of the modes at `q`.
     pub fn in_words(&self, q: &[f64]) -> String {
         let (name, distance) = (self.monomial.name(), self.distance);
-        if self.q == 0.0 {
+        if self.q.is_mean() {
             return format!(
                 "small divisor: the mean that {name} forces is met by a slow mean mode, {distance:.1e} away"
             );
         }
         let mut modes: Vec<String> = q.iter().map(|q| format!("--mode k={q}")).collect();
-        modes.push(match q.contains(&self.q) {
+        modes.push(match q.contains(&self.q.k()) {
             // Not the mode that is there already.
             true => format!(
                 "--mode k={},near={:.6}:{:.6}",
@@ -475,7 +479,7 @@ fn distinct(pairs: &[EigenPair]) -> Result<()> {
     for (i, a) in pairs.iter().enumerate() {
         for b in &pairs[..i] {
             let near = |x: C64, y: C64| (x - y).norm() <= 1e-6 * a.scale.max(a.c.norm());
-            let same = |q: f64| (a.k - q).abs() <= SAME * a.k.abs();
+            let same = |q: WaveVector| a.k.is_same(q, a.k.length());
             if (same(b.k) && near(a.c, b.c)) || (same(-b.k) && near(a.c, b.c.conj())) {
                 return Err(Error::input(format!(
                     "the modes at k = {} and k = {} are one and the same: its amplitude and the conjugate of that \

@@ -12,6 +12,7 @@ use crate::model::{C64, End, Id, Jet, Kernel, KernelId, ResidualId, evaluate};
 use crate::problem::{Problem, Turned};
 use crate::series::{Arithmetic, Levels, Monomials, Program};
 use crate::space::Points;
+use crate::wavevector::WaveVector;
 
 /// The residuals prepared, with all coefficients found so far.
 pub(super) struct Forcing {
@@ -210,7 +211,7 @@ impl PhysicalForcing {
 pub(super) struct Preparation<'a> {
     pub problem: &'a Problem,
     /// The wavenumber that a spec may name.
-    k: f64,
+    k: WaveVector,
     odd: Option<Vec<bool>>,
     weight: Option<Weight>,
 }
@@ -219,7 +220,7 @@ impl<'a> Preparation<'a> {
     /// For numbers of some arithmetic, every jet times its weight where there are weights.
     pub fn new(
         problem: &'a Problem,
-        k: f64,
+        k: WaveVector,
         arithmetic: Arithmetic,
         weight: Option<Weight>,
     ) -> Self {

@@ -3,12 +3,13 @@
 use crate::model::{C64, FieldId, Jet};
 use crate::problem::{Problem, Profile, symbol};
 use crate::space::{Place, Points};
+use crate::wavevector::WaveVector;
 
 /// Values of a mode and of its time derivative, at the unknowns' points.
 #[derive(Clone, Debug)]
 pub struct Mode {
     /// Its wavenumber: ∂x → i q.
-    pub q: f64,
+    pub q: WaveVector,
     /// X
     pub values: Profile,
     /// What stands beside the same amplitudes in ∂t X.
@@ -21,7 +22,7 @@ pub struct Mode {
 
 impl Mode {
     /// A mode that moves as `rate` says.
-    pub fn new(q: f64, values: Profile, rate: Profile) -> Self {
+    pub fn new(q: WaveVector, values: Profile, rate: Profile) -> Self {
         Mode {
             q,
             values,

@@ -5,6 +5,7 @@ use crate::model::layout::read_measure;
 use crate::model::{C64, FieldId, KernelId, Measure, evaluate};
 use crate::problem::{Problem, Profile, Turn};
 use crate::space::Place;
+use crate::wavevector::WaveVector;
 
 /// Sizes of a fundamental whose powers double precision can hold.
 const SIZES: std::ops::Range<f64> = 1e-60..1e60;
@@ -17,7 +18,7 @@ const SIZES: std::ops::Range<f64> = 1e-60..1e60;
 ///
 /// # Errors
 /// A mode whose normalising quantity vanishes.
-pub fn normalise(problem: &Problem, k: f64, values: &Profile) -> Result<C64> {
+pub fn normalise(problem: &Problem, k: WaveVector, values: &Profile) -> Result<C64> {
     let factor = unchecked(problem, k, values)?;
     let size = factor.norm() * values.largest();
     if SIZES.contains(&size) {
@@ -30,7 +31,7 @@ pub fn normalise(problem: &Problem, k: f64, values: &Profile) -> Result<C64> {
     )))
 }
 
-fn unchecked(problem: &Problem, k: f64, values: &Profile) -> Result<C64> {
+fn unchecked(problem: &Problem, k: WaveVector, values: &Profile) -> Result<C64> {
     let amplitude = &problem.structure().amplitude;
     let state = problem.base.at(Place::MIDDLE, k);
     let out = evaluate(problem.model(), KernelId::Amplitude, &state);

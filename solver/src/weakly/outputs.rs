@@ -13,7 +13,7 @@ pub fn outputs(point: &LandauPoint) -> Vec<[f64; 2]> {
     let (fundamental, mean) = (&point.fundamental, &point.mean);
     let conjugate = fundamental.conjugate();
     let terms_at = |index: usize, place: Place| -> OutputTerms<f64> {
-        let state = problem.base.at(place, point.k());
+        let state = problem.base.at(place, point.pair.k);
         let out = evaluate(problem.model(), KernelId::Outputs, &state);
         read_output(&structure.outputs, index, &out)
     };

@@ -70,7 +70,10 @@ pub fn pattern(
     let x: Vec<f64> = (0..columns)
         .map(|i| length * i as f64 / (columns - 1) as f64)
         .collect();
-    let states: Vec<Vec<f64>> = places.iter().map(|&at| problem.base.at(at, k)).collect();
+    let states: Vec<Vec<f64>> = places
+        .iter()
+        .map(|&at| problem.base.at(at, point.pair.k))
+        .collect();
     let modes = expansion.known().into_iter();
     let modes = modes.map(|(monomial, mode)| (monomial.degree(), mode));
     let sum = Superposition {
@@ -144,7 +147,7 @@ impl Superposition<'_> {
             .map(|(degree, mode)| {
                 let size = self.amplitude.powi(*degree as i32);
                 let profile = mode.at(self.problem, jet, self.places).into_iter();
-                (mode.q, profile.map(|v| v * size).collect())
+                (mode.q.k(), profile.map(|v| v * size).collect())
             })
             .collect();
         let value = |j: usize, x: f64| {

@@ -8,6 +8,7 @@ use crate::numerics::dense::{Scalar, bordered, norm, scalars};
 use crate::problem::{Border, Known, Problem, Profile, Solver, Turned};
 use crate::series::Arithmetic;
 use crate::space::Block;
+use crate::wavevector::WaveVector;
 
 /// The multiplier of a closure of a mean mode.
 #[derive(Clone, Debug)]
@@ -75,7 +76,7 @@ pub fn out_of_range() -> Error {
 /// A linear problem with its forcing, in the solver's basis.
 pub struct Question<'a> {
     /// Its wavenumber.
-    pub q: f64,
+    pub q: WaveVector,
     /// σ
     pub shift: C64,
     /// G with the boundary data.
@@ -149,7 +150,7 @@ impl Question<'_> {
     /// The numbers in which it is solved.
     fn arithmetic(&self, problem: &Problem) -> Arithmetic {
         // Without the mirror a mean that is its own conjugate is real in the basis of the fields themselves.
-        let plain_mean = self.q == 0.0 && self.is_real && !problem.is_real();
+        let plain_mean = self.q.is_mean() && self.is_real && !problem.is_real();
         match plain_mean {
             true => Arithmetic::Real,
             false => self.arithmetic,
@@ -158,7 +159,7 @@ impl Question<'_> {
 
     fn mean_symmetry(&self) -> MeanSymmetry {
         let steady = self.arithmetic == Arithmetic::Real;
-        match self.q == 0.0 && self.is_real && steady {
+        match self.q.is_mean() && self.is_real && steady {
             true => MeanSymmetry::Even,
             false => MeanSymmetry::Full,
         }

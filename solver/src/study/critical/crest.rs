@@ -5,6 +5,7 @@ use super::summit::Growth;
 use crate::error::{Error, Result};
 use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
+use crate::wavevector::WaveVector;
 use crate::weakly::{self, Envelope, Selection};
 use rayon::prelude::*;
 
@@ -46,7 +47,7 @@ pub(super) fn highest(
 ) -> Result<EigenPair> {
     let modes: Vec<Result<EigenPair>> = wavenumbers
         .par_iter()
-        .map(|&k| weakly::select(problem, k, selection))
+        .map(|&k| weakly::select(problem, WaveVector::along_x(k), selection))
         .collect();
     let (modes, failures): (Vec<_>, Vec<_>) = modes.into_iter().partition(Result::is_ok);
     let best = modes
@@ -80,8 +81,8 @@ pub(super) fn climb(
             true => newton,
             false => reach.copysign(slope.re),
         };
-        let k = (pair.k + step).clamp(from, to);
-        if k == pair.k {
+        let k = (pair.k.k() + step).clamp(from, to);
+        if k == pair.k.k() {
             let at_end = slope.re != 0.0 && (k == from || k == to);
             return Ok(Crest {
                 x,
@@ -90,7 +91,7 @@ pub(super) fn climb(
                 at_end,
             });
         }
-        let next = spectrum::follow(problem, k, &pair)?;
+        let next = spectrum::follow(problem, WaveVector::along_x(k), &pair)?;
         // A step too far.
         if next.c.re < pair.c.re - 1e-12 * pair.scale {
             reach = 0.3 * step.abs();

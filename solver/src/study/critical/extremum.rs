@@ -13,6 +13,7 @@ use super::{Critical, LEADS, Question, TOLERANCE, Tracking, UNRESOLVED, Wavenumb
 use crate::error::{Error, Result};
 use crate::numerics::brent;
 use crate::spectrum;
+use crate::wavevector::WaveVector;
 use crate::weakly::{self, Selection};
 
 /// Values of the parameter that are scanned for a mode that is followed, and every so many of them are looked at for it.
@@ -86,7 +87,7 @@ enum Neutral {
 impl Neutral {
     fn place(&self) -> (f64, f64) {
         match self {
-            Neutral::Inside(root) => (root.x, root.pair.k),
+            Neutral::Inside(root) => (root.x, root.pair.k.k()),
             Neutral::AtEnd { x, k } => (*x, *k),
         }
     }
@@ -156,7 +157,10 @@ impl Search<'_> {
 
     /// The crest of growth over k beside a summit.
     fn crest(&self, summit: &Summit) -> Result<Crest> {
-        let pair = weakly::select(&summit.site.problem, summit.k, Selection::Near(summit.c))?;
+        let pair = {
+            let k = WaveVector::along_x(summit.k);
+            weakly::select(&summit.site.problem, k, Selection::Near(summit.c))?
+        };
         climb(summit.x, summit.site.clone(), &pair, self.range)
     }
 
@@ -195,7 +199,10 @@ impl Search<'_> {
         let (x, _) = brent(follow, (crest.x, growth), (end.x, end.pair.c.re), span)?;
         let root = self.moved(x, &last)?;
         if root.at_end {
-            return Ok(Neutral::AtEnd { x, k: root.pair.k });
+            return Ok(Neutral::AtEnd {
+                x,
+                k: root.pair.k.k(),
+            });
         }
         let root = self.polished(x, &root, (stable.x, crest.x))?;
         Ok(Neutral::Inside(Box::new(root)))
@@ -277,7 +284,7 @@ impl Search<'_> {
 
     /// The answer with its errors: how far the root lies from those on other grids.
     fn answer(&self, root: Root) -> Result<Extremal> {
-        let (x, k, c0) = (root.x, root.pair.k, root.pair.c);
+        let (x, k, c0) = (root.x, root.pair.k.k(), root.pair.c);
         let unit = unit_of(&root.site.problem, &root.pair);
         let rounding = 0.1 * NEUTRAL * unit;
         // What rounding and the search leave of growth and of its slope over k.
@@ -299,7 +306,7 @@ impl Search<'_> {
             let far = f64::INFINITY;
             let [dx, dk, dc] = moved.as_ref().map_or([far; 3], |moved| {
                 let c = (moved.pair.c - c0).norm();
-                [(moved.x - x).abs(), (moved.pair.k - k).abs(), c]
+                [(moved.x - x).abs(), (moved.pair.k.k() - k).abs(), c]
             });
             critical.error = critical.error.max(factor * dx);
             critical.k_error = critical.k_error.max(factor * dk);
@@ -319,7 +326,7 @@ impl Search<'_> {
                 format!("another M moves it by {:.1e}", critical.error),
             ));
         }
-        let leading = spectrum::eigenvalues(&root.site.problem, k)?;
+        let leading = spectrum::eigenvalues(&root.site.problem, root.pair.k)?;
         let leading = leading.values.first().map_or(c0.re, |c| c.re);
         critical.leading_growth = leading.max(c0.re);
         Ok(Extremal {

@@ -7,6 +7,7 @@ use crate::base::BaseState;
 use crate::error::{Error, Result};
 use crate::numerics::{Failure, Linearised, Newton, System};
 use crate::spectrum::{self, EigenPair};
+use crate::wavevector::WaveVector;
 use crate::weakly::Envelope;
 
 const METHOD: Newton = Newton {
@@ -70,7 +71,7 @@ pub(super) fn polish(
     (x, pair, base): (f64, &EigenPair, &BaseState),
     bounds: ((f64, f64), (f64, f64)),
 ) -> Result<Root> {
-    let start = vec![pair.k, x];
+    let start = vec![pair.k.k(), x];
     let mut system = Extremum {
         setup,
         axis,
@@ -108,7 +109,7 @@ impl Root {
         let base = self.site.base.as_ref();
         let site = grid.site(&setup.moved(axis, self.x)?, Some(base))?;
         let pair = spectrum::transferred(&self.site.problem, &self.pair, &site.problem)?;
-        let k = self.pair.k;
+        let k = self.pair.k.k();
         let bounds = (
             (f64::NEG_INFINITY, f64::INFINITY),
             ((1.0 - NEARBY) * k, (1.0 + NEARBY) * k),
@@ -122,7 +123,7 @@ impl Extremum<'_> {
     fn at(&self, k: f64, x: f64) -> Result<Known> {
         let moved = self.setup.moved(self.axis, x)?;
         let site = self.grid.site(&moved, Some(self.base))?;
-        let pair = spectrum::follow(&site.problem, k, &self.near)?;
+        let pair = spectrum::follow(&site.problem, WaveVector::along_x(k), &self.near)?;
         let envelope = Envelope::of(&site.problem, &pair)?;
         Ok(Known {
             pair,

@@ -1,9 +1,10 @@
 //! A question about critical points, checked before anything is computed.
 
-use super::super::{Axis, Setup, check_wavenumber};
+use super::super::{Axis, Setup};
 use super::{Critical, Quantity};
 use crate::error::{Error, Result};
 use crate::model::C64;
+use crate::wavevector::WaveVector;
 
 /// Which mode a question is about.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -85,7 +86,7 @@ impl Question {
         }
         for value in [from, to] {
             if axis == Axis::Wavenumber {
-                check_wavenumber(value)?;
+                WaveVector::wave(value)?;
             }
             setup.moved(axis, value)?;
         }
@@ -132,11 +133,11 @@ impl Question {
     }
 
     /// The wavenumber at a place of the axis; that of the place itself where k varies.
-    pub(super) fn k(&self, x: f64) -> f64 {
-        match self.wavenumber {
+    pub(super) fn k(&self, x: f64) -> WaveVector {
+        WaveVector::along_x(match self.wavenumber {
             Wavenumber::At(k) => k,
             Wavenumber::Varies | Wavenumber::Range(..) => x,
-        }
+        })
     }
 
     /// Evenly spaced places along the axis, both ends included.
@@ -184,7 +185,7 @@ fn wavenumber(axis: Axis, request: &Request) -> Result<Wavenumber> {
             "--k and --minimize exclude each other: give one wavenumber, or a range k=A:B",
         )),
         (_, Some(k), None) => {
-            check_wavenumber(k)?;
+            WaveVector::wave(k)?;
             Ok(Wavenumber::At(k))
         }
         (_, None, Some([low, high])) => {

@@ -11,6 +11,7 @@ use crate::numerics::{Applied, brent};
 use crate::pencil::Spectrum;
 use crate::problem::Problem;
 use crate::spectrum::{self, EigenPair};
+use crate::wavevector::WaveVector;
 use crate::weakly::{self, Selection};
 use std::sync::Arc;
 
@@ -30,7 +31,7 @@ pub(super) struct Sample {
 
 /// The unit of rates of a mode's problem: the slow eigenvalues, or the terms of the slowest balance where there are too
 /// few of these to tell.
-pub(super) fn unit(problem: &Problem, k: f64, scale: f64) -> f64 {
+pub(super) fn unit(problem: &Problem, k: WaveVector, scale: f64) -> f64 {
     let rate = problem.rate(k);
     if rate.is_finite() {
         scale.max(rate)
@@ -230,7 +231,7 @@ impl<'s> Sampler<'s> {
         Ok(Critical {
             value: x,
             error,
-            k,
+            k: k.k(),
             k_error: if self.site.is_some() { error } else { 0.0 },
             c0,
             c0_error,

@@ -17,6 +17,7 @@ use crate::model::C64;
 use crate::pencil::Spectrum;
 use crate::problem::Problem;
 use crate::spectrum::{self, Scout};
+use crate::wavevector::WaveVector;
 
 /// A wider range of k, as a ratio, is looked at in geometric steps too.
 const WIDE: f64 = 6.0;
@@ -70,6 +71,7 @@ impl Summit {
 
 /// All eigenvalues of a problem at a wavenumber, and the unit of rates.
 pub(super) fn rates(problem: &Problem, k: f64) -> Result<(Spectrum, f64)> {
+    let k = WaveVector::along_x(k);
     let spectrum = spectrum::eigenvalues(problem, k)?;
     let unit = unit(problem, k, spectrum.scale());
     Ok((spectrum, unit))

@@ -10,6 +10,7 @@ use crate::study::accuracy::{landau_error, stands};
 use crate::study::derived::Derived;
 use crate::study::row::Row;
 use crate::study::{Axis, Setup};
+use crate::wavevector::WaveVector;
 use crate::weakly::{self, Bifurcation, LandauPoint, equilibrium};
 use std::sync::Arc;
 
@@ -73,8 +74,8 @@ impl Collocations {
 pub(super) struct Station {
     /// One value per axis.
     pub place: Vec<f64>,
-    /// The wavenumber.
-    pub k: f64,
+    /// The wavevector.
+    pub k: WaveVector,
     /// Shared by all places of a line along k.
     pub collocations: Arc<Collocations>,
 }
@@ -119,8 +120,8 @@ impl Sweep<'_> {
         })
     }
 
-    /// The setup and the wavenumber of a place.
-    pub(super) fn at(&self, place: &[f64]) -> Result<(Setup, f64)> {
+    /// The setup and the wavevector of a place.
+    pub(super) fn at(&self, place: &[f64]) -> Result<(Setup, WaveVector)> {
         let mut setup = self.setup.clone();
         let mut k = self.k;
         for (range, &value) in self.ranges.iter().zip(place) {
@@ -130,7 +131,7 @@ impl Sweep<'_> {
             }
         }
         let k = k.ok_or_else(|| Error::input("no axis is k: give the wavenumber, with --k"))?;
-        Ok((setup, k))
+        Ok((setup, WaveVector::wave(k)?))
     }
 
     /// The row of a mode; `leading` is the growth rate of the leading one.

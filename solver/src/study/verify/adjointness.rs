@@ -9,6 +9,7 @@ use crate::problem::{LinearProblem, Problem, symbol};
 use crate::space::{Place, Series};
 use crate::spectrum;
 use crate::study::quadrature::adjoint_mode;
+use crate::wavevector::WaveVector;
 use crate::weakly::{LandauPoint, Selection};
 
 /// Degree of the random fields.
@@ -19,7 +20,7 @@ pub(super) fn check(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
     if let Err(reason) = problem.adjoint() {
         return Ok(vec![Check::left_out(2, "duality", reason.to_string())]);
     }
-    let k = point.k();
+    let k = point.pair.k;
     let mut checks = Vec::new();
     let worst = (0..4)
         .map(|seed| duality(problem, k, seed))
@@ -58,7 +59,7 @@ pub(super) fn check(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
 }
 
 /// |⟨Y, L X⟩ − ⟨L†Y, X⟩| over the sum of the moduli.
-pub fn duality(problem: &Problem, k: f64, seed: u64) -> f64 {
+pub fn duality(problem: &Problem, k: WaveVector, seed: u64) -> f64 {
     let Ok(adjoint) = problem.adjoint() else {
         return f64::NAN;
     };
@@ -92,12 +93,16 @@ pub fn duality(problem: &Problem, k: f64, seed: u64) -> f64 {
 /// Random smooth fields, by Chebyshev coefficients, that obey the conditions of a problem.
 struct Smooth<'p, Row, Column> {
     problem: &'p LinearProblem<Row, Column>,
-    k: f64,
+    k: WaveVector,
     series: Table<Column, Vec<C64>>,
 }
 
 impl<'p, Row: Id, Column: Id> Smooth<'p, Row, Column> {
-    fn admissible(problem: &'p LinearProblem<Row, Column>, k: f64, random: &mut Random) -> Self {
+    fn admissible(
+        problem: &'p LinearProblem<Row, Column>,
+        k: WaveVector,
+        random: &mut Random,
+    ) -> Self {
         let degree = if problem.space.is_point() { 0 } else { DEGREE };
         let coefficient = |n: usize| 1.0 / (1.0 + (n * n) as f64);
         let mut one = || {

@@ -9,6 +9,7 @@ use crate::model::{C64, Jet, KernelId, ResidualId, evaluate};
 use crate::problem::Problem;
 use crate::series::{Levels, Monomials, Program};
 use crate::space::Place;
+use crate::wavevector::WaveVector;
 
 /// All orders of three arguments; the first two entries of some are those of two.
 const ORDERS: [[usize; 3]; 6] = [
@@ -52,7 +53,7 @@ impl State {
         let jets = problem.structure().residual_jets.len();
         let mut direction = || (0..jets).map(|_| random.complex()).collect();
         State {
-            point: problem.base.at(place, 1.0),
+            point: problem.base.at(place, WaveVector::along_x(1.0)),
             directions: [direction(), direction(), direction()],
         }
     }

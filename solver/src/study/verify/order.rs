@@ -13,6 +13,7 @@ use crate::model::{BalanceId, C64, End, Id, Jet, Kernel, ResidualId, WithRoundin
 use crate::problem::{Problem, Profile};
 use crate::series::Monomial;
 use crate::space::{Block, Points};
+use crate::wavevector::WaveVector;
 use crate::weakly::{Expansion, LandauPoint, Mode, power};
 use integrals::OnIntegrals;
 
@@ -195,7 +196,10 @@ struct Tables {
 fn on_grid(expansion: &Expansion, modes: &[Mode], points: Points) -> OnGrid {
     let problem = expansion.problem.as_ref();
     let jets = &problem.structure().residual_jets;
-    let k = expansion.modes.first().map_or(0.0, |mode| mode.pair.k);
+    let k = expansion
+        .modes
+        .first()
+        .map_or(WaveVector::MEAN, |mode| mode.pair.k);
     let places = problem.space().places(points).into_iter();
     let states = places.map(|place| problem.base.at(place, k));
     let states: Vec<Vec<f64>> = states.collect();

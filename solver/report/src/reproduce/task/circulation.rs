@@ -11,7 +11,7 @@ use super::planes::{at_equilibrium, crest, largest, peak, quantity};
 use super::{Named, Place, Work, each};
 use crate::figure::{Panel, Style};
 use landau_solver::error::{Error, Result};
-use landau_solver::study;
+use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{Pattern, PlaneField};
 use nalgebra::{Matrix2, Vector2};
 
@@ -85,7 +85,7 @@ impl Circulation {
     }
 
     fn measured(&self, shop: &Workshop, case: &Case) -> Result<Vortex> {
-        study::check_wavenumber(self.k)?;
+        WaveVector::wave(self.k)?;
         let plane = at_equilibrium(&shop.setup(case)?, self.k, MEASURED, 1.0, &[])?;
         let [u, v] = &self.arrows;
         let components = [quantity(&plane, u)?, quantity(&plane, v)?];

@@ -4,6 +4,7 @@ use super::called;
 use landau_solver::error::Result;
 use landau_solver::problem::Problem;
 use landau_solver::spectrum::EigenPair;
+use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{Selection, select};
 
 /// The value at each place of an axis, the modes at multiples of k being followed along it; why there is none where there
@@ -22,7 +23,8 @@ pub(super) fn along<R>(
             .enumerate()
             .map(|(j, multiple)| {
                 let near = last.as_ref().map(|pairs| Selection::Like(&pairs[j]));
-                select(problem, multiple * k, near.unwrap_or(Selection::Leading))
+                let q = WaveVector::wave(multiple * k)?;
+                select(problem, q, near.unwrap_or(Selection::Leading))
             })
             .collect();
         values.push(pairs.and_then(|pairs| {

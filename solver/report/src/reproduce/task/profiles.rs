@@ -14,6 +14,7 @@ use landau_solver::base::BaseState;
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{End, Expression};
 use landau_solver::study::Setup;
+use landau_solver::wavevector::WaveVector;
 
 /// Points of a profile.
 const POINTS: usize = 401;
@@ -76,7 +77,7 @@ impl Profiles {
         let expressions: Vec<Expression> = expressions.collect::<Result<_>>()?;
         let mut columns = vec![Vec::new(); self.fields.len() + 1];
         for place in base.space.evenly(POINTS) {
-            let point = base.at(place, 0.0);
+            let point = base.at(place, WaveVector::MEAN);
             columns[0].push(base.space.y(place));
             for (column, expression) in columns[1..].iter_mut().zip(&expressions) {
                 column.push(expression.at_base(model.structure(), &point));

@@ -14,6 +14,7 @@ use landau_solver::model::C64;
 use landau_solver::problem::Problem;
 use landau_solver::spectrum;
 use landau_solver::study::quadrature::adjoint_mode;
+use landau_solver::wavevector::WaveVector;
 
 /// Growth rates at one wavenumber.
 struct Rates {
@@ -79,11 +80,12 @@ impl Spectrum {
         let setup = shop.setup(case)?;
         let problem = &setup.problem(&setup.base(None)?)?;
         let rates = |k: f64| {
-            let mode = spectrum::leading(problem, k)?;
+            let q = WaveVector::wave(k)?;
+            let mode = spectrum::leading(problem, q)?;
             // Where inverse iteration finds no isolated partner, the nearest of all of L†.
             let adjoint = match adjoint_mode(problem, &mode) {
                 Ok(adjoint) => adjoint.c,
-                Err(_) => nearest_adjoint(problem, k, mode.c)?,
+                Err(_) => nearest_adjoint(problem, q, mode.c)?,
             };
             Ok(Rates {
                 k,
@@ -108,8 +110,8 @@ fn widest(rates: &[Rates]) -> f64 {
 }
 
 /// The eigenvalue of L† whose conjugate is nearest to c.
-fn nearest_adjoint(problem: &Problem, k: f64, c: C64) -> Result<C64> {
-    let values = spectrum::adjoint_eigenvalues(problem, k)?.values;
+fn nearest_adjoint(problem: &Problem, q: WaveVector, c: C64) -> Result<C64> {
+    let values = spectrum::adjoint_eigenvalues(problem, q)?.values;
     let gap = |d: &C64| (d.conj() - c).norm();
     let nearest = values.into_iter().min_by(|a, b| gap(a).total_cmp(&gap(b)));
     nearest.ok_or_else(|| Error::computation("L† has no finite eigenvalue"))

@@ -92,7 +92,7 @@ impl Series<'_> {
 /// Factors e^{i q_j x} of the modes at places over a common period, enough for every power up to twice the order;
 /// where the wavenumbers have none, of all phases one by one: the average over x holds for each of them.
 fn translations(expansion: &Expansion) -> Option<Vec<Vec<C64>>> {
-    let q: Vec<f64> = expansion.modes.iter().map(|mode| mode.pair.k).collect();
+    let q: Vec<f64> = expansion.modes.iter().map(|mode| mode.pair.k.k()).collect();
     let powers = 2 * (expansion.order() + 1);
     let turn = |part: f64| C64::cis(std::f64::consts::TAU * part);
     let multiples = |denominator: u32| -> Option<Vec<f64>> {

@@ -6,7 +6,8 @@ mod kinds;
 
 use super::place::{Mistake, Step};
 use super::{Axis, Case, Figure, Spacing, Study};
-use landau_solver::study::{check_resolution, check_wavenumber};
+use landau_solver::study::check_resolution;
+use landau_solver::wavevector::WaveVector;
 
 /// Values along one axis.
 const VALUES: std::ops::RangeInclusive<usize> = 2..=10_000;
@@ -99,7 +100,9 @@ impl Spot {
 
     /// Refuses a wavenumber that cannot be one.
     fn wavenumber(&self, key: &str, k: f64) -> Checked {
-        check_wavenumber(k).map_err(|error| self.key(key).mistake(error.to_string()))
+        WaveVector::wave(k)
+            .map(|_| ())
+            .map_err(|error| self.key(key).mistake(error.to_string()))
     }
 
     /// Refuses a number of collocation points out of range, as the command line does.
