@@ -70,10 +70,7 @@ impl Ingredients {
         let problem = &root.site.problem;
         let mut moved = setup.moved(Axis::Parameter(parameter), root.x)?;
         moved.resolution = problem.resolution.unwrap_or(setup.resolution);
-        let slopes = sensitivity::parameters(&moved, &root.site.base, &root.pair).into_iter();
-        let missing = || Error::computation("the parameter follows from the base state");
-        let mut of_parameter = slopes.filter(|(id, _)| *id == parameter);
-        let along = of_parameter.next().ok_or_else(missing)?.1?;
+        let along = sensitivity::parameter(&moved, &root.site.base, &root.pair, parameter)?;
         let default = setup.model.structure().parameters[parameter].default;
         // What the difference quotient steps by a part of: the parameter, or its default where that is as good as zero.
         let size = [root.x, default]

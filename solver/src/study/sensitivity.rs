@@ -51,9 +51,46 @@ pub fn parameters(
         resolution: setup.effective_resolution(),
         pairs: vec![pair],
     };
-    let all = derivatives(setup, base, &[probe]).into_iter();
-    all.map(|(id, found)| (id, found.map(|p| p.growth[0])))
+    let all = derivatives(setup, base, &[probe], &free(setup)).into_iter();
+    all.map(|(id, partial)| (id, partial.map(|p| p.growth[0])))
         .collect()
+}
+
+/// The same for one parameter.
+///
+/// # Errors
+/// A parameter that is determined by the base; a base state beside that cannot be found.
+pub fn parameter(
+    setup: &Setup,
+    base: &BaseState,
+    pair: &EigenPair,
+    parameter: ParameterId,
+) -> Result<C64> {
+    let probe = Probe {
+        resolution: setup.effective_resolution(),
+        pairs: vec![pair],
+    };
+    if !free(setup).contains(&parameter) {
+        return Err(Error::computation(
+            "the parameter follows from the base state",
+        ));
+    }
+    let partial = derivatives(setup, base, &[probe], &[parameter]).pop();
+    let (_, partial) = partial.ok_or_else(|| Error::computation("there is no such parameter"))?;
+    Ok(partial?.growth[0])
+}
+
+/// Parameters that vary continuously.
+fn continuous(setup: &Setup) -> impl Iterator<Item = ParameterId> {
+    let structure = setup.model.structure();
+    let numbers = structure.parameters.ids();
+    numbers.filter(|&id| structure.parameters[id].is_continuous())
+}
+
+/// Those of them that are not determined by the base.
+fn free(setup: &Setup) -> Vec<ParameterId> {
+    let free = continuous(setup).filter(|&id| !setup.parameters.automatic[id]);
+    free.collect()
 }
 
 /// The same with errors: those of the difference formula, and what the companions of the mode change.
@@ -90,6 +127,7 @@ pub fn measured(
             weights.push(companion.weight);
         }
     }
+    let free = free(setup);
     let beside = refined.map(|(companion, moved)| {
         let probe = Probe {
             resolution: problem.resolution,
@@ -97,10 +135,10 @@ pub fn measured(
         };
         (
             companion.weight,
-            derivatives(setup, &companion.problem.base, &[probe]),
+            derivatives(setup, &companion.problem.base, &[probe], &free),
         )
     });
-    let here = derivatives(setup, &problem.base, &probes).into_iter();
+    let here = derivatives(setup, &problem.base, &probes, &free).into_iter();
     let measure = |(index, partial): (usize, Partial)| {
         let value = partial.growth[0];
         let differences = partial.growth.iter().zip(&weights);
@@ -123,12 +161,10 @@ fn derivatives(
     setup: &Setup,
     base: &BaseState,
     probes: &[Probe],
+    free: &[ParameterId],
 ) -> Vec<(ParameterId, Result<Partial>)> {
-    let structure = setup.model.structure();
-    let numbers = structure.parameters.ids();
-    let numbers = numbers.filter(|&id| structure.parameters[id].is_continuous());
-    let (automatic, free): (Vec<ParameterId>, Vec<ParameterId>) =
-        numbers.partition(|&id| setup.parameters.automatic[id]);
+    let automatic = continuous(setup).filter(|&id| setup.parameters.automatic[id]);
+    let automatic: Vec<ParameterId> = automatic.collect();
     let difference = Difference {
         setup,
         base,

@@ -211,7 +211,7 @@ impl Search<'_> {
     /// A root by Newton's method from x and the wavenumber of a crest, inside the range of k and a bracket.
     fn polished(&self, x: f64, crest: &Crest, bracket: (f64, f64)) -> Result<Root> {
         let grid = Grid::of(self.setup);
-        let start = (x, &crest.pair, crest.site.base.as_ref());
+        let start = (x, &crest.pair, &crest.site.base);
         polish(self.setup, self.axis(), grid, start, (bracket, self.range))
     }
 

@@ -89,6 +89,11 @@ impl Grid {
         grids
     }
 
+    /// Whether its base states have the degree at which they are resolved, so that one is found from another.
+    pub fn keeps_degree(self) -> bool {
+        self.degree == Degree::Settled
+    }
+
     /// The problem of a setup on this grid; its base state from a neighbouring one where that is given.
     ///
     /// # Errors

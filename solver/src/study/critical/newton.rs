@@ -9,6 +9,7 @@ use crate::numerics::{Failure, Linearised, Newton, System};
 use crate::spectrum::{self, EigenPair};
 use crate::wavevector::WaveVector;
 use crate::weakly::Envelope;
+use std::sync::Arc;
 
 const METHOD: Newton = Newton {
     most_steps: 20,
@@ -55,7 +56,7 @@ struct Extremum<'s> {
     /// Bounds of the parameter and of k.
     bounds: ((f64, f64), (f64, f64)),
     /// A base state nearby, at the degree at which it is resolved.
-    base: &'s BaseState,
+    base: Arc<BaseState>,
     /// The mode that is followed.
     near: EigenPair,
 }
@@ -68,7 +69,7 @@ pub(super) fn polish(
     setup: &Setup,
     axis: Axis,
     grid: Grid,
-    (x, pair, base): (f64, &EigenPair, &BaseState),
+    (x, pair, base): (f64, &EigenPair, &Arc<BaseState>),
     bounds: ((f64, f64), (f64, f64)),
 ) -> Result<Root> {
     let start = vec![pair.k.k(), x];
@@ -77,7 +78,7 @@ pub(super) fn polish(
         axis,
         grid,
         bounds,
-        base,
+        base: base.clone(),
         near: pair.clone(),
     };
     let lost = |failure: Failure| {
@@ -106,7 +107,7 @@ impl Root {
     /// # Errors
     /// A mode that is not found there, an iteration that does not settle nearby.
     pub fn on(&self, setup: &Setup, axis: Axis, grid: Grid) -> Result<Root> {
-        let base = self.site.base.as_ref();
+        let base = &self.site.base;
         let site = grid.site(&setup.moved(axis, self.x)?, Some(base))?;
         let pair = spectrum::transferred(&self.site.problem, &self.pair, &site.problem)?;
         let k = self.pair.k.k();
@@ -122,7 +123,7 @@ impl Extremum<'_> {
     /// The mode followed to another place, with its derivatives over k.
     fn at(&self, k: f64, x: f64) -> Result<Known> {
         let moved = self.setup.moved(self.axis, x)?;
-        let site = self.grid.site(&moved, Some(self.base))?;
+        let site = self.grid.site(&moved, Some(&self.base))?;
         let pair = spectrum::follow(&site.problem, WaveVector::along_x(k), &self.near)?;
         let envelope = Envelope::of(&site.problem, &pair)?;
         Ok(Known {
@@ -150,6 +151,9 @@ impl System for Extremum<'_> {
         let nudge = NUDGE * if width > 0.0 { x.abs().max(width) } else { 1.0 };
         let both = self.at(k, x).and_then(|here| {
             self.near = here.pair.clone();
+            if self.grid.keeps_degree() {
+                self.base = here.site.base.clone();
+            }
             // Backwards where the parameter's range ends.
             let beside = self.at(k, x + nudge).map(|there| (there, nudge));
             let beside = beside.or_else(|_| self.at(k, x - nudge).map(|there| (there, -nudge)));
