@@ -455,7 +455,7 @@ impl Progress for Steps {
 #[test]
 fn every_step_is_told() {
     let steps = Steps::default();
-    let setup = Setup::new(built("swift_hohenberg"), 50);
+    let setup = Setup::new(built("swift_hohenberg"), 50).expect("M");
     let modes = [1.0, 0.7].map(|k| ModeChoice { k, near: None });
     AmplitudesReport::compute(&setup, &modes, 4, &steps).expect("the equations");
     let counts = [&steps.announced, &steps.done, &steps.ended].map(|n| n.load(Ordering::Relaxed));

@@ -60,7 +60,7 @@ fn point(
     set: &[(&str, f64)],
 ) -> Option<PointReport> {
     let model = built(name);
-    let mut setup = Setup::new(model.clone(), m);
+    let mut setup = Setup::new(model.clone(), m).expect("M");
     let set: Vec<String> = set.iter().map(|(n, v)| format!("{n}={v:e}")).collect();
     setup.set(&set).expect("parameters");
     let selection = near.map_or(Selection::Leading, Selection::Near);
@@ -280,7 +280,7 @@ fn error_bars_hold() {
 #[ignore = "slow profile"]
 fn a_base_state_out_of_reach_ends() {
     let model = built("vibrated_bed");
-    let mut setup = Setup::new(model.clone(), 50);
+    let mut setup = Setup::new(model.clone(), 50).expect("M");
     let settings = ["F=40", "S=5", "e=0.5", "H=auto"].map(str::to_owned);
     setup.set(&settings).expect("parameters");
     let error = setup.base(None).expect_err("none is known there");

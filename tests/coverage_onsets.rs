@@ -91,7 +91,7 @@ impl Family {
         let [low, high] = self.resolutions;
         let own = low + (high - low) * part(0);
         let answer = |m: usize| {
-            let mut setup = Setup::new(built(self.model), m);
+            let mut setup = Setup::new(built(self.model), m).expect("M");
             let values = self.set.iter().enumerate();
             let set: Vec<String> = values
                 .map(|(i, (name, from, to))| format!("{name}={}", from + (to - from) * part(i + 1)))

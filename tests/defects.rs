@@ -17,7 +17,7 @@ fn with_expansion<R>(
     action: impl FnOnce(&Problem, Expansion) -> R,
 ) -> R {
     let model = built(name);
-    let mut setup = Setup::new(model.clone(), m);
+    let mut setup = Setup::new(model.clone(), m).expect("M");
     let set: Vec<String> = set.iter().map(|s| (*s).to_owned()).collect();
     setup.set(&set).expect("parameters");
     let base = setup.base(None).expect("a base state");

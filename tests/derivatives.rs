@@ -57,7 +57,7 @@ fn derivatives_of_the_growth_rate() {
 }
 
 fn check(model: &Arc<dyn Model>, name: &str, k: f64, m: usize, settings: &[&str]) {
-    let mut setup = Setup::new(model.clone(), m);
+    let mut setup = Setup::new(model.clone(), m).expect("M");
     let settings: Vec<String> = settings.iter().map(|s| (*s).to_owned()).collect();
     setup.set(&settings).expect("settings");
     let base = setup.base(None).expect("a base state");
@@ -121,7 +121,7 @@ fn extremum_with_a_wavenumber_in_a_condition() {
         crate::support::number(&found, "/k"),
     );
     let model = built("vibrated_bed");
-    let mut setup = Setup::new(model.clone(), 50);
+    let mut setup = Setup::new(model.clone(), 50).expect("M");
     let settings = ["top=decaying".to_owned(), format!("S={s}")];
     setup.set(&settings).expect("settings");
     let base = setup.base(None).expect("a base state");

@@ -43,7 +43,7 @@ fn coefficient(structure: &Structure, values: &[f64], row: &str, field: &str, x:
 fn linear_operator_of_the_bed() {
     let model = built("vibrated_bed");
     let structure = model.structure();
-    let state = Setup::new(model.clone(), 50).base(None);
+    let state = Setup::new(model.clone(), 50).expect("M").base(None);
     let state = state.expect("a base state");
     for part in [0.015, 0.2, 0.45, 0.675, 0.9] {
         let point = state.at(Place::at(part), WaveVector::MEAN);

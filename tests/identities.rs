@@ -64,7 +64,7 @@ fn with_problem<R>(
     settings: &[(&str, &str)],
     action: impl FnOnce(&Arc<Problem>) -> R,
 ) -> R {
-    let mut setup = Setup::new(model.clone(), resolution);
+    let mut setup = Setup::new(model.clone(), resolution).expect("M");
     for (name, value) in settings {
         setup
             .parameters

@@ -244,7 +244,7 @@ fn expansion(text: &str, order: usize) -> Expansion {
     let path = written("planted.model", text);
     let sources = landau_codegen::build::read_sources(&path).expect("the spec can be read");
     let model: Arc<dyn Model> = Arc::new(landau_codegen::tape(&sources).expect("well formed"));
-    let setup = Setup::new(model, 20);
+    let setup = Setup::new(model, 20).expect("M");
     let base = setup.base(None).expect("a base state");
     let problem = setup.problem(&base).expect("a problem");
     let pair = select(&problem, WaveVector::along_x(1.0), Selection::Leading).expect("a mode");

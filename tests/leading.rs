@@ -38,7 +38,7 @@ fn crossing() -> Setup {
     let path = written("crossing.model", CROSSING);
     let sources = landau_codegen::build::read_sources(&path).expect("the spec can be read");
     let model = landau_codegen::tape(&sources).expect("the spec is well formed");
-    Setup::new(Arc::new(model), 8)
+    Setup::new(Arc::new(model), 8).expect("M")
 }
 
 fn along_k(setup: &Setup, from: f64, to: f64, count: usize, mode: RowMode) -> Vec<Row> {
@@ -114,7 +114,7 @@ fn tall_beds_agree_with_their_full_spectra() {
         ("S=60", 0.15, 0.2),
         ("S=800", 0.05, 0.3),
     ] {
-        let mut setup = Setup::new(built("vibrated_bed"), 50);
+        let mut setup = Setup::new(built("vibrated_bed"), 50).expect("M");
         setup
             .set(&[set.to_owned(), "H=auto".to_owned()])
             .expect("parameters");
@@ -138,7 +138,7 @@ fn tall_beds_agree_with_their_full_spectra() {
 #[test]
 fn a_coarse_sweep_over_a_wide_range_finds_the_band() {
     let rows = along_k(
-        &Setup::new(built("vibrated_bed"), 50),
+        &Setup::new(built("vibrated_bed"), 50).expect("M"),
         0.01,
         0.6,
         30,

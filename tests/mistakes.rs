@@ -171,10 +171,10 @@ SWEEP | count = 5 | count = 1000000000 | count = 1000000000 & from 2 to 10000
 SWEEP | count = 5 | count = 1 | count = 1 & from 2 to 10000
 SWEEP | count = 5 | count = -3 | count
 POWER_LAW | count = 5 | count = 100000 | count = 100000 & from 3 to 1000
-CONVERGENCE | [8, 16] | [8, 0] | -M 0 is out of range: -M accepts 4 to 1000
-CONVERGENCE | [8, 16] | [8, 100000] | -M 100000 is out of range: -M accepts 4 to 1000
+CONVERGENCE | [8, 16] | [8, 0] | M = 0 is out of range: M accepts 4 to 1000
+CONVERGENCE | [8, 16] | [8, 100000] | M = 100000 is out of range: M accepts 4 to 1000
 CONVERGENCE | [8, 16] | [] | resolutions & two or more
-VALUES | k = 1.0 | k = 1.0⏎resolution = 100000 | -M 100000 is out of range: -M accepts 4 to 1000
+VALUES | k = 1.0 | k = 1.0⏎resolution = 100000 | M = 100000 is out of range: M accepts 4 to 1000
 ORDERS | highest = 7 | highest = 8 | highest = 8 & odd numbers from 5 to 15
 ORDERS | highest = 7 | highest = 1001 | odd numbers from 5 to 15
 PATTERN | wavelengths = 2.0 | wavelengths = 0.0 | wavelengths = 0 & above 0
@@ -292,7 +292,7 @@ fn what_cannot_be_meant_is_refused_before_any_work() {
     assert!(
         answer
             .err
-            .contains("-M 100000 is out of range: -M accepts 4 to 1000"),
+            .contains("M = 100000 is out of range: M accepts 4 to 1000"),
         "{}",
         answer.err
     );

@@ -385,7 +385,7 @@ fn questions_without_meaning() {
 #[test]
 fn pictures_draw_converged_values() {
     let model = built("vibrated_bed");
-    let setup = Setup::new(model.clone(), 40);
+    let setup = Setup::new(model.clone(), 40).expect("M");
     let request = Request {
         vary: "k",
         between: [0.12, 0.3],
@@ -397,7 +397,7 @@ fn pictures_draw_converged_values() {
     let question = Question::new(&setup, &request).expect("a question");
     let found = CriticalReport::compute(&setup, &question, &Silent).expect("a root");
     let curve = found.curve(&setup, &question, &Silent).expect("a curve");
-    let finer = Setup::new(model.clone(), 100);
+    let finer = Setup::new(model.clone(), 100).expect("M");
     let problem = finer
         .problem(&finer.base(None).expect("a base state"))
         .expect("a problem");

@@ -240,7 +240,7 @@ fn base_states() {
                 format!("e={e}"),
                 format!("H={height}"),
             ];
-            let mut setup = Setup::new(model.clone(), 50);
+            let mut setup = Setup::new(model.clone(), 50).expect("M");
             for (name, text) in settings.iter().filter_map(|s| s.split_once('=')) {
                 let set = setup.parameters.set_text(model.structure(), name, text);
                 set.expect("a parameter of the bed");

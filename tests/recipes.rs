@@ -86,7 +86,7 @@ fn blasius() {
     let model: Arc<dyn Model> = Arc::new(landau_codegen::tape(&sources).expect("well formed"));
     let k = 0.3038 / 1.7207876573;
     let growth = |reynolds: f64| {
-        let mut setup = Setup::new(model.clone(), 90);
+        let mut setup = Setup::new(model.clone(), 90).expect("M");
         setup.set(&[format!("R={reynolds}")]).expect("a parameter");
         let base = setup.base(None).expect("a base state");
         // f''(0) of Blasius

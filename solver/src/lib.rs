@@ -17,7 +17,7 @@
 //!
 //! /// c2 of the leading mode at one wavenumber, with M = 50.
 //! fn first_landau_coefficient(model: Arc<dyn Model>, k: f64) -> Result<C64> {
-//!     let setup = Setup::new(model, 50);
+//!     let setup = Setup::new(model, 50)?;
 //!     let base = setup.base(None)?;
 //!     Ok(setup.point(&base, k, Selection::Leading)?.c2)
 //! }

@@ -9,7 +9,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 fn warm(criterion: &mut Criterion, name: &str, model: &Arc<dyn Model>) {
-    let setup = Setup::new(model.clone(), 50);
+    let setup = Setup::new(model.clone(), 50).expect("M");
     let base = setup.base(None).expect("a base state");
     let problem = setup.problem(&base).expect("a problem");
     let near = point(&problem, 0.16, Selection::Leading)
@@ -22,7 +22,7 @@ fn warm(criterion: &mut Criterion, name: &str, model: &Arc<dyn Model>) {
 
 /// Coefficients of higher orders, and of a pair of modes: the modes known, everything else anew.
 fn series(criterion: &mut Criterion, model: &Arc<dyn Model>) {
-    let setup = Setup::new(model.clone(), 50);
+    let setup = Setup::new(model.clone(), 50).expect("M");
     let base = setup.base(None).expect("a base state");
     let problem = setup.problem(&base).expect("a problem");
     let pair = |k: f64| select(&problem, k, Selection::Leading).expect("a mode");
@@ -57,7 +57,7 @@ fn benches(criterion: &mut Criterion) {
     let tape: Arc<dyn Model> = Arc::new(tape);
     warm(criterion, "warm Landau point, M = 50, tape", &tape);
     criterion.bench_function("base state", |b| {
-        let setup = Setup::new(bed.clone(), 50);
+        let setup = Setup::new(bed.clone(), 50).expect("M");
         b.iter(|| setup.base(None).expect("a base state").residual);
     });
     criterion.bench_function("generator, all specs", |b| {

@@ -89,7 +89,7 @@ fn check_claims(model: &Arc<dyn Model>) -> Result<()> {
     if claims(case) == 0 {
         return Ok(());
     }
-    let setup = Setup::new(model.clone(), CLAIM_RESOLUTION);
+    let setup = Setup::new(model.clone(), CLAIM_RESOLUTION)?;
     setup.problem(&setup.base(None)?)?;
     Ok(())
 }
@@ -106,7 +106,7 @@ fn check_closed_base(model: &Arc<dyn Model>) -> Result<Vec<String>> {
         return Ok(notes);
     }
     for sample in SAMPLES {
-        let mut setup = Setup::new(model.clone(), 8);
+        let mut setup = Setup::new(model.clone(), 8)?;
         let mut shown = Vec::new();
         for (index, (id, info)) in structure.parameters.pairs().enumerate() {
             // Each by its own part, so that nothing cancels.

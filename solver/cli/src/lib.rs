@@ -26,7 +26,7 @@ use landau_report::library::Library;
 use landau_solver::error::Result;
 use landau_solver::file::Overwrite;
 use landau_solver::model::Model;
-use landau_solver::study::{Setup, check_resolution};
+use landau_solver::study::Setup;
 use std::process::ExitCode;
 use std::sync::Arc;
 
@@ -169,8 +169,7 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
 /// A model with the parameters and the resolution that are asked for.
 fn setup(library: &Library, name: &str, common: &Common) -> Result<Setup> {
     let model = library.model(name)?;
-    check_resolution(common.resolution)?;
-    let mut setup = Setup::new(model, common.resolution);
+    let mut setup = Setup::new(model, common.resolution)?;
     setup.set(&common.set)?;
     Ok(setup)
 }

@@ -165,7 +165,7 @@ impl Core {
         k: Option<f64>,
         amplitude: Option<f64>,
     ) -> PyResult<String> {
-        let setup = Setup::new(self.model.clone(), resolution);
+        let setup = Setup::new(self.model.clone(), resolution).map_err(raised)?;
         let parameters = serde_json::from_str(parameters)
             .map_err(|error| raised(Error::input(error.to_string())))?;
         let facts = attributes(&setup, &parameters, k, amplitude).into_iter();

@@ -18,7 +18,7 @@ use landau_solver::study::shard::{Share, merge};
 use landau_solver::study::spectrum::SpectrumReport;
 use landau_solver::study::sweep::{Range, RowMode, Sweep};
 use landau_solver::study::verify::Certificate;
-use landau_solver::study::{Axis, Setup, Silent, check_resolution};
+use landau_solver::study::{Axis, Setup, Silent};
 use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{Selection, Window, pattern};
 use landau_solver::words;
@@ -31,12 +31,7 @@ use std::sync::Arc;
 type Near = Option<(f64, f64)>;
 
 fn setup(model: Arc<dyn Model>, set: &[String], resolution: usize) -> Result<Setup> {
-    if check_resolution(resolution).is_err() {
-        return Err(Error::input(format!(
-            "M = {resolution} is out of range: it accepts 4 to 1000"
-        )));
-    }
-    let mut setup = Setup::new(model, resolution);
+    let mut setup = Setup::new(model, resolution)?;
     setup.set(set)?;
     Ok(setup)
 }

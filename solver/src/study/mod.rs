@@ -46,7 +46,7 @@ pub struct Setup {
     /// Values, and which of them the base state determines.
     pub parameters: Parameters,
     /// M
-    pub resolution: usize,
+    resolution: usize,
     /// Parameters that [`Setup::set`] was told, which an axis must not vary.
     assigned: Vec<ParameterId>,
     /// Differentiation matrices, shared by all problems of the study.
@@ -102,17 +102,35 @@ impl Axis {
 }
 
 impl Setup {
-    /// The defaults of a model at a resolution.
-    pub fn new(model: Arc<dyn Model>, resolution: usize) -> Self {
+    /// The defaults of a model at a resolution M.
+    ///
+    /// # Errors
+    /// An M that is less than 4 or more than 1000.
+    pub fn new(model: Arc<dyn Model>, resolution: usize) -> Result<Self> {
+        check_resolution(resolution)?;
         let parameters = Parameters::defaults(model.structure());
-        Setup {
+        Ok(Setup {
             model,
             parameters,
             resolution,
             assigned: Vec::new(),
             matrices: Arc::default(),
             bases: Arc::default(),
-        }
+        })
+    }
+
+    /// The same at another resolution M; matrices and base states stay shared.
+    ///
+    /// # Errors
+    /// As [`Setup::new`].
+    pub fn at_resolution(self, resolution: usize) -> Result<Self> {
+        check_resolution(resolution)?;
+        Ok(Setup { resolution, ..self })
+    }
+
+    /// M, whether or not the model has a cross-stream coordinate.
+    pub fn resolution(&self) -> usize {
+        self.resolution
     }
 
     /// Sets parameters from `NAME=VALUE`.
@@ -274,6 +292,6 @@ pub fn check_resolution(resolution: usize) -> Result<()> {
         return Ok(());
     }
     Err(Error::input(format!(
-        "-M {resolution} is out of range: -M accepts 4 to 1000"
+        "M = {resolution} is out of range: M accepts 4 to 1000"
     )))
 }

@@ -9,7 +9,7 @@ include!(concat!(env!("OUT_DIR"), "/models.rs"));
 /// c0 and c2 at wavenumber 1; by hand the second harmonic is −i/(9 + r), and so c2 = −1/(9 + r).
 fn coefficients(r: f64) -> Result<(f64, f64)> {
     let models = models();
-    let mut setup = Setup::new(models[0].clone(), 1);
+    let mut setup = Setup::new(models[0].clone(), 4).expect("M");
     setup
         .parameters
         .set_text(setup.model.structure(), "r", &r.to_string())?;
@@ -41,7 +41,7 @@ mod tests {
             .iter()
             .find(|m| m.structure().name == "type")
             .expect("the model");
-        let mut setup = Setup::new(model.clone(), 20);
+        let mut setup = Setup::new(model.clone(), 20).expect("M");
         for m in [1.0, 3.0] {
             setup.set(&[format!("m={m}")]).expect("a whole number");
             let base = setup.base(None).expect("a base state");

@@ -26,7 +26,7 @@ pub fn attributes(
         text("source", &format!("Landau {}", env!("CARGO_PKG_VERSION"))),
         text("model", &structure.name),
         text("model_hash", &setup.hash()),
-        number("resolution", setup.resolution as f64),
+        number("resolution", setup.resolution() as f64),
         text("normalization", &structure.amplitude.description),
         text("landau_version", env!("CARGO_PKG_VERSION")),
         text("landau_build", &setup.build()),

@@ -86,7 +86,7 @@ impl Workshop<'_> {
         let mut parts = vec![stem.to_owned(), text(serde_json::to_string(task))?];
         for case in task.kind().cases() {
             let setup = self.setup(case)?;
-            parts.push(format!("{} {}", setup.resolution, setup.hash()));
+            parts.push(format!("{} {}", setup.resolution(), setup.hash()));
         }
         for reference in task.kind().references() {
             let text = self.study.read_beside(&reference.file)?;

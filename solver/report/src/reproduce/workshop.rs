@@ -87,8 +87,7 @@ impl<'a> Workshop<'a> {
     pub(super) fn setup(&self, case: &Case) -> Result<Setup> {
         let name = case.model.as_ref().unwrap_or(&self.study.model);
         let resolution = case.resolution.unwrap_or(self.study.resolution);
-        let mut setup = self.defaults(name)?;
-        setup.resolution = resolution;
+        let mut setup = self.defaults(name)?.at_resolution(resolution)?;
         setup.set(&case.set)?;
         Ok(setup)
     }
@@ -109,7 +108,7 @@ impl<'a> Workshop<'a> {
             Some(path) if file.is_file() => self.library.model(path)?,
             _ => self.library.model(name)?,
         };
-        let setup = Setup::new(model, self.study.resolution);
+        let setup = Setup::new(model, self.study.resolution)?;
         setups.insert(name.to_owned(), setup.clone());
         Ok(setup)
     }
