@@ -292,3 +292,28 @@ fn a_pressure_is_no_part_of_the_default_norm() {
         "|h|² = 1"
     );
 }
+
+/// A base state that is zero everywhere is solved for like any other, from any start: ∂t q = r q + ∇²q − q³ between walls
+/// has c0 = r − π² − k² and, with q = A sin πz cos kx, c2 = −9/4.
+#[test]
+fn a_base_state_that_is_zero() {
+    for base in ["", "base { guess { q = 0.1 + z; } }"] {
+        let file = spec(
+            "zero.model",
+            &format!(
+                "model zero \"A base state that is zero\";\n\
+                 coordinates {{ x: periodic; z: 0..1; }}\n\
+                 parameters {{ r = 1; }}\n\
+                 fields {{ q; }}\n\
+                 balance {{ e: dt(q) = r*q + dx(dx(q)) + dz(dz(q)) - q^3; }}\n\
+                 {base}\n\
+                 boundary {{ at z = 0 {{ q = 0; }} at z = 1 {{ q = 0; }} }}\n\
+                 amplitude {{ at z = 1/2 {{ q = 1; }} }}\n"
+            ),
+        );
+        let point = json(&format!("point {file} --k 1"));
+        let leading = -std::f64::consts::PI.powi(2);
+        close("c0", number(&point, "/c0/0"), leading, 1e-10);
+        close("c2", number(&point, "/c2/0"), -2.25, 1e-10);
+    }
+}

@@ -21,6 +21,8 @@ use std::fmt;
 const CONVERGED: f64 = 1e-10;
 /// How far below its range a field may fall at too low a degree, where a profile dies out.
 const SLACK: f64 = 1e-6;
+/// Values that are smaller than this part of those at the start are zero.
+const ZERO: f64 = 1e-14;
 const METHOD: Newton = Newton {
     most_steps: 40,
     least_part: 1e-3,
@@ -61,6 +63,8 @@ pub(super) struct Collocated<'a> {
     /// Where each family of rows is collocated, with its rows.
     groups: Vec<(Vec<Place>, Vec<BaseRowId>)>,
     integral: Quadrature,
+    /// The largest value at the start.
+    start: f64,
     /// From a column to other points, made when first wanted.
     derivatives: HashMap<(SolvedId, Points, usize), Derivative>,
 }
@@ -86,13 +90,24 @@ pub(super) fn solve(
             .collect(),
         integral: space.quadrature(degree + 1),
         derivatives: HashMap::new(),
+        start: 0.0,
         layout,
         degree,
         space,
     };
     let initial = system.initial(start);
-    let (values, at) = METHOD.solve(&mut system, initial)?;
+    system.start = largest(&initial);
+    let (mut values, at) = METHOD.solve(&mut system, initial)?;
+    if largest(&values) <= ZERO * system.start {
+        values.fill(0.0);
+    }
     Ok(system.state(&values, at.size()))
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
 /// A row of the system: a value, and its slopes by the unknowns.
@@ -304,7 +319,8 @@ impl System for Collocated<'_> {
     }
 
     fn is_last(&self, values: &[f64], step: &[f64]) -> bool {
-        let largest = |list: &[f64]| list.iter().fold(1e-300_f64, |m, v| m.max(v.abs()));
-        largest(step) < CONVERGED * largest(values)
+        let (values, step) = (largest(values), largest(step));
+        // A state that is zero everywhere is reached to the rounding of the start.
+        step <= CONVERGED * values || values + step <= ZERO * self.start
     }
 }

@@ -76,6 +76,7 @@ impl Question {
     pub fn new(setup: &Setup, request: &Request) -> Result<Self> {
         let axis = Axis::named(setup.model.as_ref(), request.vary)?;
         axis.check_continuous(setup.model.structure())?;
+        setup.check_free(axis, None)?;
         let [from, to] = request.between;
         let span = (to - from).abs();
         if !(LEAST_SPAN..f64::INFINITY).contains(&span) {

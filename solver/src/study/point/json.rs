@@ -92,10 +92,12 @@ impl PointReport {
             ("envelope", self.envelope(reasons.within("envelope"))),
             ("waves", self.wave_answers(reasons.within("waves"))),
         ] {
-            if key != "waves" || self.waves.is_some() {
-                top.values.insert(key.to_owned(), answers.values.into());
-                top.errors.insert(key.to_owned(), answers.errors.into());
+            if key == "waves" && self.waves.is_none() {
+                top.missing(key);
+                continue;
             }
+            top.values.insert(key.to_owned(), answers.values.into());
+            top.errors.insert(key.to_owned(), answers.errors.into());
         }
         let reasons = reasons.within("");
         let stable = self.stable();
