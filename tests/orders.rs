@@ -321,3 +321,31 @@ amplitude { p = 1; }
         close("v", number(&found, "/envelope/group_velocity"), 0.0, 1e-8);
     }
 }
+
+/// The mirror x → −x holds to third degree and is broken by a term of fourth degree: the series goes on in complex
+/// numbers. Truths: an independent expansion in 40 digits.
+#[test]
+fn a_mirror_that_breaks_at_fourth_degree() {
+    for (term, c6) in [
+        ("u*dx(u)^3", 0.382_004_820_63),
+        ("dx(u^4)", -6.952_015_768_4),
+    ] {
+        let spec = format!(
+            "model broken_mirror \"Swift–Hohenberg with a term of fourth degree\";\n\
+             coordinates {{ x: periodic; }}\n\
+             parameters {{ r = 0.1; }}\n\
+             fields {{ u; }}\n\
+             let w = u + dx(dx(u));\n\
+             balance {{ e: dt(u) = r*u - w - dx(dx(w)) - u^3 + {term}; }}\n\
+             base {{ u = 0; }}\n\
+             amplitude {{ u = 1; }}\n"
+        );
+        let path = written("broken_mirror.model", &spec);
+        let point = json(&format!("point {} --k 1 --order 7", path.display()));
+        close("c4", number(&point, "/c4/0"), 0.046_728_971_962_6, 1e-12);
+        close("c6", number(&point, "/c6/0"), c6, 1e-10);
+        let line = format!("verify {} --k 1 --order 5", path.display());
+        let certificate = landau(&line.split_whitespace().collect::<Vec<_>>());
+        assert_eq!(certificate.status, 0, "{}", certificate.out);
+    }
+}

@@ -65,7 +65,7 @@ impl Expansion {
     pub fn new(problem: &Arc<Problem>, pairs: Vec<EigenPair>) -> Result<Self> {
         let rates: Vec<C64> = pairs.iter().map(|pair| pair.c).collect();
         distinct(&pairs)?;
-        let arithmetic = arithmetic(problem, &rates);
+        let mut arithmetic = arithmetic(problem, &rates);
         let mut modes = Vec::new();
         for pair in pairs {
             let profile = fundamental(problem, &pair)?;
@@ -78,6 +78,12 @@ impl Expansion {
             });
         }
         let k = modes.first().map_or(WaveVector::MEAN, |mode| mode.pair.k);
+        let mut forcing = Forcing::new(&Preparation::new(problem, k, arithmetic, None))?;
+        if arithmetic == Arithmetic::Real && !forcing.is_real() {
+            // The mirror is known of the balances to third degree. Terms of higher degree may break it.
+            arithmetic = Arithmetic::Complex;
+            forcing = Forcing::new(&Preparation::new(problem, k, arithmetic, None))?;
+        }
         let mut expansion = Expansion {
             problem: problem.clone(),
             system: AmplitudeSystem::linear(&rates),
@@ -85,7 +91,7 @@ impl Expansion {
             arithmetic,
             monomials: Monomials::new(modes.len()),
             profiles: vec![modes.iter().map(|mode| mode.profile.clone()).collect()],
-            forcing: Forcing::new(&Preparation::new(problem, k, arithmetic, None))?,
+            forcing,
             responses: Vec::new(),
             modes,
         };

@@ -100,6 +100,13 @@ impl Forcing {
         })
     }
 
+    /// Whether all residuals run in real arithmetic: the mirror then holds at every degree.
+    pub fn is_real(&self) -> bool {
+        let mut equations = self.equations.iter();
+        equations.all(|equations| equations.group.is_real())
+            && self.integrals.as_ref().is_none_or(Integrals::is_real)
+    }
+
     /// Begins a degree, the next: `wanted` are the stored monomials that are asked for.
     pub fn begin(&mut self, monomials: &Monomials, degree: usize, wanted: &[usize]) {
         for Equations { group, .. } in &mut self.equations {
@@ -268,6 +275,11 @@ fn odd_jets(problem: &Problem, jets: &[Jet], arithmetic: Arithmetic) -> Option<V
 }
 
 impl Group {
+    /// Whether it runs in real arithmetic.
+    pub fn is_real(&self) -> bool {
+        self.program.arithmetic() == Arithmetic::Real
+    }
+
     pub fn begin(&mut self, monomials: &Monomials, degree: usize, wanted: &[usize]) {
         self.levels.begin(&self.program, monomials, degree, wanted);
     }

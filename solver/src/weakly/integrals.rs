@@ -33,6 +33,11 @@ impl Integrals {
         })
     }
 
+    /// Whether the densities run in real arithmetic.
+    pub fn is_real(&self) -> bool {
+        self.group.is_real()
+    }
+
     pub fn begin(&mut self, monomials: &Monomials, degree: usize, wanted: &[usize]) {
         self.group.begin(monomials, degree, wanted);
     }

@@ -6,7 +6,7 @@ use super::super::{Progress, Setup};
 use super::crest::{Crest, climb, highest};
 use super::first::{SCAN, WAVENUMBERS};
 use super::grid::{Beside, Grid};
-use super::newton::{Root, polish};
+use super::newton::{Root, SMALL, polish};
 use super::sampler::{NEUTRAL, unit_of};
 use super::summit::{Growth, Summit};
 use super::{Critical, LEADS, Question, TOLERANCE, Tracking, UNRESOLVED, Wavenumber};
@@ -65,6 +65,7 @@ pub fn minimise(setup: &Setup, question: &Question, progress: &dyn Progress) -> 
         Tracking::Fastest | Tracking::Near(_) => search.followed(progress),
     }?;
     let answer = search.answer(root)?;
+    search.check_interval(&answer.critical)?;
     progress.end();
     Ok(answer)
 }
@@ -94,6 +95,20 @@ impl Neutral {
 }
 
 impl Search<'_> {
+    /// Refuses a root that lies outside of the interval by more than its error.
+    fn check_interval(&self, critical: &Critical) -> Result<()> {
+        let Critical { value, error, .. } = *critical;
+        let [from, to] = self.question.between();
+        let [low, high] = [from.min(to), from.max(to)];
+        if (low - error..=high + error).contains(&value) {
+            return Ok(());
+        }
+        Err(Error::NoCriticalPoint(format!(
+            "the largest growth rate over k passes through zero at {value}, outside of the interval {low}..{high}: try \
+             another interval"
+        )))
+    }
+
     pub(super) fn no_change(&self, [first, last]: [Growth; 2]) -> Error {
         let [from, to] = self.question.between();
         let (low, high) = self.range;
@@ -128,7 +143,7 @@ impl Search<'_> {
             {
                 return self.inside(neutral);
             }
-            if (x - stable.x).abs().min((x - unstable.x).abs()) <= TOLERANCE * x.abs() {
+            if (x - stable.x).abs().min((x - unstable.x).abs()) <= TOLERANCE * self.size(x) {
                 break;
             }
             if summit.c.re > 0.0 {
@@ -142,6 +157,12 @@ impl Search<'_> {
              there; try a smaller range of k, or --near to name a mode",
             stable.x, unstable.x
         )))
+    }
+
+    /// The size of a value of the parameter: no less than a part of the interval, so that zero is a value like others.
+    fn size(&self, x: f64) -> f64 {
+        let [from, to] = self.question.between();
+        x.abs().max(SMALL * (to - from).abs())
     }
 
     /// The root, if it lies inside the range of k.
@@ -184,7 +205,7 @@ impl Search<'_> {
         }
         let mut last = crest.clone();
         let end = self.moved(stable.x, crest)?;
-        let span = TOLERANCE * stable.x.abs().max(crest.x.abs());
+        let span = TOLERANCE * self.size(stable.x).max(self.size(crest.x));
         let follow = |x: f64| {
             let nearest = match (x - last.x).abs() < (x - end.x).abs() {
                 true => &last,
@@ -318,8 +339,8 @@ impl Search<'_> {
         }
         let [low, high] = [self.range.0, self.range.1];
         let lost = critical.k_error.is_nan() || critical.k_error >= high - low;
-        if lost || critical.error.is_nan() || critical.error > (UNRESOLVED * x.abs()).max(leftover)
-        {
+        let bound = (UNRESOLVED * self.size(x)).max(leftover);
+        if lost || critical.error.is_nan() || critical.error > bound {
             return Err(Error::unresolved(
                 format!("the critical point near {x}"),
                 self.setup.effective_resolution(),

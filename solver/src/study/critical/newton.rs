@@ -3,6 +3,7 @@
 use super::super::{Axis, Setup};
 use super::TOLERANCE;
 use super::grid::{Grid, Site};
+use super::sampler::{NEUTRAL, unit_of};
 use crate::base::BaseState;
 use crate::error::{Error, Result};
 use crate::numerics::{Failure, Linearised, Newton, System};
@@ -18,7 +19,7 @@ const METHOD: Newton = Newton {
 /// Relative change of the parameter by which derivatives along it are differenced.
 const NUDGE: f64 = 1e-6;
 /// Part of its bracket below which a parameter counts as zero.
-const SMALL: f64 = 1e-4;
+pub(super) const SMALL: f64 = 1e-4;
 /// Part of its bracket by which a parameter may leave it.
 const SLACK: f64 = 1e-6;
 /// Relative accuracy of the wavenumber.
@@ -59,6 +60,8 @@ struct Extremum<'s> {
     base: Arc<BaseState>,
     /// The mode that is followed.
     near: EigenPair,
+    /// What rounding of the growth rate makes of the parameter.
+    rounding: f64,
 }
 
 /// The root from a parameter, a mode and a base state nearby, within bounds of the parameter and of k.
@@ -80,6 +83,7 @@ pub(super) fn polish(
         bounds,
         base: base.clone(),
         near: pair.clone(),
+        rounding: 0.0,
     };
     let lost = |failure: Failure| {
         Error::computation(format!(
@@ -164,6 +168,7 @@ impl System for Extremum<'_> {
         };
         let along = (there.pair.c.re - here.pair.c.re) / nudge;
         let across = (there.envelope.slope.re - here.envelope.slope.re) / nudge;
+        self.rounding = NEUTRAL * unit_of(&here.site.problem, &here.pair) / along.abs();
         let Envelope { slope, curvature } = here.envelope;
         Ok(Some(Linearised {
             residual: vec![here.pair.c.re, slope.re],
@@ -207,6 +212,7 @@ impl System for Extremum<'_> {
             0.0
         };
         let size = at[1].abs().max(SMALL * width);
-        step[1].abs() <= TOLERANCE * size && step[0].abs() <= SETTLED * at[0]
+        let settled = (TOLERANCE * size).max(self.rounding);
+        step[1].abs() <= settled && step[0].abs() <= SETTLED * at[0]
     }
 }
