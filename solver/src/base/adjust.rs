@@ -1,4 +1,4 @@
-//! Parameters set to `auto`: those with which the base state meets a condition of its own.
+//! Parameters set to `auto`: their values are those at which the base state meets a condition that the spec names.
 
 use super::continuation::{at_defaults, walk};
 use super::{Accuracy, BaseState, Effort, FULL, ROUGH, fixed};
@@ -8,16 +8,16 @@ use crate::numerics::{Failure, Linearised, Newton, System};
 use crate::parameters::Parameters;
 use nalgebra::{DMatrix, DVector};
 
-/// Relative step that says that a condition does not feel its parameter.
+/// A Newton step of more than this many times the parameter means that the condition does not depend on the parameter.
 const BLIND: f64 = 1e3;
-/// The largest change of a parameter in one step, relative.
+/// The largest change of a parameter in one step, relative to the parameter, so that the base state can be continued.
 const BOUND: f64 = 0.2;
 const METHOD: Newton = Newton {
     most_steps: 25,
     least_part: 1.0,
 };
 
-/// What is left of the conditions that determine the given parameters.
+/// Residuals of the conditions that determine the automatic parameters `unknown`, one each.
 pub fn automatic_conditions(state: &BaseState, unknown: &[ParameterId]) -> DVector<f64> {
     let automatic = &state.structure().base.automatic;
     let values = unknown.iter().map(|&parameter| {
@@ -30,7 +30,10 @@ pub fn automatic_conditions(state: &BaseState, unknown: &[ParameterId]) -> DVect
     DVector::from_iterator(unknown.len(), values)
 }
 
-/// The state whose automatic parameters meet their conditions.
+/// The base state whose automatic parameters meet their conditions.
+///
+/// # Errors
+/// A base state cannot be computed, or the conditions are not met.
 pub(super) fn determine(
     effort: &Effort,
     parameters: &Parameters,
@@ -39,7 +42,7 @@ pub(super) fn determine(
     if let Ok(state) = adjust(effort, parameters, near, FULL) {
         return Ok(state);
     }
-    // The automatic parameters adjusted at every step: their defaults may suit no other values.
+    // Go there in steps and adjust the automatic parameters at each: their defaults suit the default values alone.
     let start = match near {
         Some(state) => state.clone(),
         None => {
@@ -60,7 +63,7 @@ struct Conditions<'a> {
     parameters: Parameters,
     unknown: Vec<ParameterId>,
     accuracy: Accuracy,
-    /// The state that the next one is found from.
+    /// The latest state, from which the next one starts.
     last: Option<BaseState>,
 }
 
@@ -87,9 +90,9 @@ impl Conditions<'_> {
 }
 
 impl System for Conditions<'_> {
-    /// Made for a step alone: it takes a base state a parameter.
+    /// Computed in `step`, by one base state for each parameter.
     type Jacobian = ();
-    type Known = BaseState;
+    type Byproduct = BaseState;
     type Error = Trouble;
 
     fn linearise(
@@ -103,7 +106,7 @@ impl System for Conditions<'_> {
         Ok(Some(Linearised {
             residual: residual.iter().copied().collect(),
             jacobian: (),
-            known: state,
+            byproduct: state,
         }))
     }
 
@@ -120,7 +123,7 @@ impl System for Conditions<'_> {
             let step = 1e-6 * moved[column].abs().max(1e-3);
             moved[column] += step;
             let shifted = self
-                .state(&moved, Some(&at.known))
+                .state(&moved, Some(&at.byproduct))
                 .map_err(Trouble::State)?;
             let shifted = automatic_conditions(&shifted, &self.unknown);
             jacobian.set_column(column, &((shifted - &residual) / step));
@@ -148,7 +151,7 @@ impl System for Conditions<'_> {
     }
 }
 
-/// Newton's method on the automatic parameters.
+/// Newton's method on the automatic parameters, from the values of the neighbour or else from those given.
 fn adjust(
     effort: &Effort,
     parameters: &Parameters,
@@ -174,7 +177,7 @@ fn adjust(
         last: near.cloned(),
     };
     match METHOD.solve(&mut conditions, start) {
-        Ok((_, at)) => Ok(at.known),
+        Ok((_, at)) => Ok(at.byproduct),
         Err(Trouble::State(error)) => Err(error),
         Err(Trouble::Iteration) => Err(Error::computation(format!(
             "the condition that determines {} was not met; give a value instead of auto",

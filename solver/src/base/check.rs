@@ -1,4 +1,4 @@
-//! A base state in closed form against its balances and its conditions.
+//! Checks a base state in closed form against its balances, and every base state against its conditions.
 
 use super::BaseState;
 use crate::error::{Error, Result};
@@ -9,41 +9,42 @@ use crate::wavevector::WaveVector;
 /// Places at which a closed base state is checked against its balances.
 const CHECKS: usize = 7;
 
-/// What a closed form leaves of a balance or a condition, relative to the terms it is made of: up to here it is
-/// rounding.
+/// Up to here a residual is rounding. This bound and the next two are relative to the terms of the balance or condition,
+/// taken before they cancel.
 const ROUNDED: f64 = 1e-9;
 
-/// Up to here a balance holds but for numbers that are written with too few digits.
+/// Up to here the residual of a balance is due to numbers that are written with six or more digits.
 const NEARLY_BALANCED: f64 = 1e-6;
 
-/// Up to here a condition holds but for the tail of a profile that decays towards an end, such as e^{−z} at z = 7.
+/// Up to here the residual of a condition is due to the tail of a profile that decays towards an end: e^{−7} is 9 · 10⁻⁴.
 const NEARLY_MET: f64 = 1e-3;
 
-/// A balance or a condition, and what the base state leaves of it.
+/// The residual of a balance or of a condition at the base state.
 struct Leftover {
     /// Line of the spec.
     line: usize,
-    /// In words: which one it is.
+    /// Which balance or condition, in words.
     name: String,
     residual: WithRounding,
-    /// Where, with the coordinate's name.
+    /// The place, as ` at y = 1`.
     place: String,
-    /// Relative size up to which it is a note.
+    /// Relative size up to which the residual is a note, and beyond which it is an error.
     noted: f64,
-    /// What to do about a larger one.
+    /// What to do where it is an error.
     remedy: String,
 }
 
 impl Leftover {
-    /// Size relative to the terms.
+    /// Size relative to the terms before they cancel.
     fn relative(&self) -> f64 {
-        match self.residual.value == 0.0 {
-            true => 0.0,
-            false => (self.residual.value / self.residual.size).abs(),
+        if self.residual.value == 0.0 {
+            0.0
+        } else {
+            (self.residual.value / self.residual.size).abs()
         }
     }
 
-    /// What is no number is larger than any.
+    /// Whether the relative size is at most `bound`; never for NaN.
     fn is_within(&self, bound: f64) -> bool {
         self.relative() <= bound
     }
@@ -66,7 +67,7 @@ impl BaseState {
     /// # Errors
     /// Names the worst of those that do not hold, its place in the spec, and what to do.
     pub(super) fn checked(mut self) -> Result<Self> {
-        let found = self.leftovers();
+        let leftovers = self.leftovers();
         let larger = |a: &&Leftover, b: &&Leftover| {
             // NaN is the largest.
             let size = |l: &Leftover| {
@@ -78,14 +79,14 @@ impl BaseState {
             };
             (size(a) / a.noted).total_cmp(&(size(b) / b.noted))
         };
-        let refused = found
+        let refused = leftovers
             .iter()
             .filter(|l| !l.is_within(l.noted))
             .max_by(larger);
         if let Some(worst) = refused {
             return Err(Error::computation(self.refusal(worst)));
         }
-        let noted = found.iter().filter(|l| !l.is_within(ROUNDED));
+        let noted = leftovers.iter().filter(|l| !l.is_within(ROUNDED));
         self.notes = noted
             .map(|l| {
                 format!(
@@ -138,23 +139,23 @@ impl BaseState {
                 values.fold(0.0, f64::max)
             })
             .collect();
-        let mut found = Vec::new();
+        let mut leftovers = Vec::new();
         if structure.base.solved.is_empty() {
             for point in &points {
-                found.extend(self.balances(point, &sizes));
+                leftovers.extend(self.balances(point, &sizes));
             }
         }
         for end in End::BOTH {
-            found.extend(self.conditions(end, &sizes));
+            leftovers.extend(self.conditions(end, &sizes));
         }
-        // Of each balance the largest.
-        found.sort_by(|a, b| {
+        // Of each balance keep the largest.
+        leftovers.sort_by(|a, b| {
             (a.line, &a.name)
                 .cmp(&(b.line, &b.name))
                 .then(b.relative().total_cmp(&a.relative()))
         });
-        found.dedup_by(|a, b| (a.line, &a.name) == (b.line, &b.name));
-        found
+        leftovers.dedup_by(|a, b| (a.line, &a.name) == (b.line, &b.name));
+        leftovers
     }
 
     fn balances(&self, point: &[f64], sizes: &[f64]) -> Vec<Leftover> {

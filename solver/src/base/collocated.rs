@@ -1,8 +1,12 @@
-//! The base state at one degree, as a system for Newton's method.
+//! The base state at one degree N, as a system for Newton's method.
 //!
-//! Fields and balances have values and points by the offsets of the base problem, the widest field
-//! being a polynomial of degree N; wall and integral conditions make up the difference. Where a layer
-//! inside asks for it, the polynomials are in a stretched coordinate.
+//! Unknowns are the values x of the solved fields at Chebyshev points, then unknown numbers. Equations are, for the base
+//! state X⁰ that x stands for,
+//!
+//! R(X⁰) = 0 at the points of each balance,  W(X⁰) = 0 at each end,  ∫ D(X⁰) dy = given value.
+//!
+//! The offsets of the base problem say how many values a field and how many points a balance has beyond N, so that there
+//! are as many equations as unknowns. Where a profile has an interior layer, the polynomials are in a stretched coordinate.
 
 use super::Effort;
 use super::state::BaseState;
@@ -17,9 +21,11 @@ use faer::linalg::solvers::Solve;
 use std::collections::HashMap;
 use std::fmt;
 
-/// Relative step after which a state counts as found.
+/// Newton's method ends after a step below this part of the largest value: convergence is quadratic, and the error after
+/// that step is about its square.
 const CONVERGED: f64 = 1e-10;
-/// How far below its range a field may fall at too low a degree, where a profile dies out.
+/// How far a field may leave its declared range, in its units, during the iteration: at too low a degree a profile that
+/// decays to the end of its range oscillates about it.
 const SLACK: f64 = 1e-6;
 /// Values that are smaller than this part of those at the start are zero.
 const ZERO: f64 = 1e-14;
@@ -28,11 +34,11 @@ const METHOD: Newton = Newton {
     least_part: 1e-3,
 };
 
-/// Why there is no state.
+/// Why there is no state at some degree.
 pub(super) enum Trouble {
-    /// Of the iteration.
+    /// Newton's method has failed.
     Newton(Failure),
-    /// The work that a base state is worth is spent.
+    /// The work that is allowed for a base state is spent.
     Spent,
 }
 
@@ -60,16 +66,19 @@ pub(super) struct Collocated<'a> {
     space: Space,
     degree: usize,
     layout: Layout<BaseRowId, SolvedId>,
-    /// Where each family of rows is collocated, with its rows.
+    /// Families of balances that share their points, with these points.
     groups: Vec<(Vec<Place>, Vec<BaseRowId>)>,
     integral: Quadrature,
     /// The largest value at the start.
     start: f64,
-    /// From a column to other points, made when first wanted.
+    /// ∂y^order of a field at a family of points, computed when first needed.
     derivatives: HashMap<(SolvedId, Points, usize), Derivative>,
 }
 
-/// The state of one degree, from another where there is one.
+/// The state at one degree, from `start` or else from the guesses of the spec.
+///
+/// # Errors
+/// Newton's method fails, or the work that is allowed is spent.
 pub(super) fn solve(
     effort: &Effort,
     parameters: &Parameters,
@@ -110,9 +119,11 @@ fn largest(values: &[f64]) -> f64 {
         .fold(0.0, |largest, value| largest.max(value.abs()))
 }
 
-/// A row of the system: a value, and its slopes by the unknowns.
+/// One equation F_i(x) = 0 at a state.
 struct Row {
+    /// F_i
     value: f64,
+    /// ∂F_i/∂x_j, by unknown.
     slopes: Vec<f64>,
 }
 
@@ -125,6 +136,7 @@ impl Collocated<'_> {
         self.model().structure()
     }
 
+    /// Values of the unknowns to start from: those of a state, or the guesses of the spec.
     fn initial(&self, start: Option<&BaseState>) -> Vec<f64> {
         let template = self.state(&vec![0.0; self.layout.size], 0.0);
         let mut values = Vec::with_capacity(self.layout.size);
@@ -144,6 +156,7 @@ impl Collocated<'_> {
         values
     }
 
+    /// The state that values of the unknowns stand for.
     fn state(&self, values: &[f64], residual: f64) -> BaseState {
         // Newton's method itself reads a first derivative.
         let order = self.structure().base_order.max(1);
@@ -160,16 +173,24 @@ impl Collocated<'_> {
         }
     }
 
-    /// All rows: balances, conditions at the ends, integrals.
+    /// All equations: balances, conditions at the ends, integral conditions.
     fn rows(&mut self, values: &[f64]) -> Vec<Row> {
         let state = self.state(values, 0.0);
+        let mut rows: Vec<Row> = Vec::with_capacity(self.layout.size);
+        self.balances(&state, &mut rows);
+        self.conditions(&state, &mut rows);
+        self.integrals(&state, &mut rows);
+        rows
+    }
+
+    /// R(X⁰) = 0 at the points of each balance.
+    fn balances(&mut self, state: &BaseState, rows: &mut Vec<Row>) {
         let model = self.effort.model.clone();
         let structure = model.structure();
-        let mut rows: Vec<Row> = Vec::with_capacity(self.layout.size);
-        // One run of the kernel gives all rows of a family of points.
-        let mut outputs: HashMap<BaseRowId, usize> = HashMap::new();
-        let mut runs: Vec<Vec<Vec<f64>>> = Vec::new();
-        for (places, own) in &self.groups {
+        // One run of the kernel at a point gives all balances there.
+        let mut group_of: HashMap<BaseRowId, usize> = HashMap::new();
+        let mut outputs: Vec<Vec<Vec<f64>>> = Vec::new();
+        for (places, balances) in &self.groups {
             let at = |&place: &Place| {
                 evaluate(
                     model.as_ref(),
@@ -177,12 +198,12 @@ impl Collocated<'_> {
                     &state.at(place, WaveVector::MEAN),
                 )
             };
-            outputs.extend(own.iter().map(|&row| (row, runs.len())));
-            runs.push(places.iter().map(at).collect());
+            group_of.extend(balances.iter().map(|&row| (row, outputs.len())));
+            outputs.push(places.iter().map(at).collect());
         }
         for (row, info) in structure.base.rows.pairs() {
             let points = self.layout.rows[row].points;
-            for (i, out) in runs[outputs[&row]].iter().enumerate() {
+            for (i, out) in outputs[group_of[&row]].iter().enumerate() {
                 let read = read_base_row(&structure.base.rows, row, out);
                 rows.push(Row {
                     value: read.value,
@@ -190,6 +211,12 @@ impl Collocated<'_> {
                 });
             }
         }
+    }
+
+    /// W(X⁰) = 0 at each end.
+    fn conditions(&mut self, state: &BaseState, rows: &mut Vec<Row>) {
+        let model = self.effort.model.clone();
+        let structure = model.structure();
         let case = &structure.cases[state.case];
         for end in End::BOTH {
             let point = state.at_end(end);
@@ -201,10 +228,9 @@ impl Collocated<'_> {
                 });
             }
         }
-        self.integrals(&state, &mut rows);
-        rows
     }
 
+    /// ∫ D(X⁰) dy − given value = 0, by quadrature.
     fn integrals(&mut self, state: &BaseState, rows: &mut Vec<Row>) {
         let model = self.effort.model.clone();
         let structure = model.structure();
@@ -229,11 +255,12 @@ impl Collocated<'_> {
             for (i, ((_, weight), out)) in nodes.iter().zip(&outputs).enumerate() {
                 let (read, prescribed) = read_integral(integrals, index, out);
                 row.value += weight * read.value;
+                // The given value is an output of the kernel, the same at every node.
                 if i == 0 {
                     row.value -= prescribed;
                 }
-                let own = self.by_unknowns(structure, jets, &read.slopes, points, i);
-                for (entry, slope) in row.slopes.iter_mut().zip(own) {
+                let at_node = self.by_unknowns(structure, jets, &read.slopes, points, i);
+                for (entry, slope) in row.slopes.iter_mut().zip(at_node) {
                     *entry += weight * slope;
                 }
             }
@@ -241,7 +268,7 @@ impl Collocated<'_> {
         }
     }
 
-    /// Slopes by base jets at one of some points as slopes by the unknowns.
+    /// ∂F/∂x_j = Σ_jets ∂F/∂jet · D_ij: slopes by base jets at the `point`-th of some points as slopes by the unknowns.
     fn by_unknowns(
         &mut self,
         structure: &Structure,
@@ -269,10 +296,10 @@ impl Collocated<'_> {
 
 impl System for Collocated<'_> {
     type Jacobian = Mat<f64>;
-    type Known = ();
+    type Byproduct = ();
     type Error = Trouble;
 
-    /// Residual and Jacobian, each row scaled by the size of its entries.
+    /// F and ∂F/∂x, each equation divided by its largest slope, so that the size of the residual does not depend on units.
     fn linearise(&mut self, values: &[f64]) -> Result<Option<Linearised<Self>>, Trouble> {
         let size = self.layout.size;
         self.effort.spend(size)?;
@@ -295,11 +322,11 @@ impl System for Collocated<'_> {
         Ok(Some(Linearised {
             residual,
             jacobian,
-            known: (),
+            byproduct: (),
         }))
     }
 
-    /// Whether a trial keeps the declared ranges, by values at the nodes.
+    /// Whether every field stays within its declared range at its points.
     fn admits(&self, values: &[f64]) -> bool {
         self.layout.columns.pairs().all(|(solved, column)| {
             let structure = self.structure();

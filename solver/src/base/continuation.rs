@@ -1,13 +1,13 @@
-//! From a state that can be found to one that is asked for, in steps that adapt.
+//! Continuation in the parameters, from a base state that Newton's method reaches to the one that is asked for.
 
 use super::{BaseState, Effort, FULL, ROUGH, describe, refine};
 use crate::error::Result;
 use crate::parameters::Parameters;
 
-/// Smallest step, as a fraction of the way.
+/// Smallest step, as a fraction of the way. The first is a quarter; where eight halvings do not help, the state has ended.
 const SMALLEST_STEP: f64 = 1.0 / 256.0;
 
-/// Roughly the state at `target`, from a neighbour or from the defaults.
+/// The state at `target` to [`ROUGH`] accuracy, from a neighbour with the same switches or else from the defaults.
 pub(super) fn to(
     effort: &Effort,
     target: &Parameters,
@@ -52,7 +52,7 @@ pub(super) fn at_defaults(effort: &Effort, target: &Parameters) -> Result<BaseSt
     })
 }
 
-/// Follows a state from its parameters to `target`.
+/// Follows a state from its parameters to `target`. Steps grow by 1.7 after a success and shrink to 0.4 after a failure.
 pub(super) fn walk(
     target: &Parameters,
     start: BaseState,

@@ -1,4 +1,4 @@
-//! The base state: in closed form, or by Newton's method on the emitted residual.
+//! The base state: in closed form, or by Newton's method on the residual that the model's kernels compute.
 
 mod adjust;
 mod check;
@@ -18,40 +18,45 @@ use collocated::Trouble;
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// Degrees tried until the Chebyshev coefficients have died out.
+/// Degrees of the Chebyshev series, tried until the coefficients have died out; each is about 3/2 of the one before.
 const DEGREES: [usize; 7] = [36, 54, 80, 120, 180, 270, 400];
-/// How good a state has to be.
+
+/// How accurate a state has to be.
 #[derive(Clone, Copy)]
 struct Accuracy {
-    /// Size of the last coefficients relative to the largest at which a profile is resolved.
+    /// A profile is resolved when its last Chebyshev coefficients are below this part of the largest.
     tail: f64,
-    /// Relative change at which an automatic parameter is settled.
+    /// An automatic parameter is settled when a step changes it by less than this part.
     change: f64,
 }
 
+/// For states that are results: the tail is some 450 times the machine's precision, which derivatives amplify.
 const FULL: Accuracy = Accuracy {
     tail: 1e-13,
     change: 1e-11,
 };
-/// For states that are only on the way to another.
+/// For states on the way to another one, which serve as starts of Newton's method.
 const ROUGH: Accuracy = Accuracy {
     tail: 1e-7,
     change: 1e-3,
 };
-/// Beyond this fraction at the highest degree the profile counts as unresolved.
+/// A profile whose tail is larger than this at the highest degree is an error. Between [`FULL`] and this the state is kept,
+/// and its truncation shows in the errors of what follows from it.
 const UNRESOLVED: f64 = 1e-9;
-/// Degree at which an unresolved profile is looked at for a layer.
+/// Degree from which on an unresolved profile is given a stretched coordinate, which widens its layer.
 const STRETCHED_FROM: usize = 120;
-/// Consecutive degrees at which the iteration may fail.
+/// Number of degrees at which Newton's method may fail before the next degree is no longer tried.
 const MOST_FAILURES: usize = 2;
 
-/// What one base state is worth, in cubes of unknowns: some twenty seconds of one core.
-const WORTH: f64 = 3e11;
+/// Work allowed for one base state, as a sum of cubes of the number of unknowns: some twenty seconds of one core.
+const ALLOWED_WORK: f64 = 3e11;
 
-/// A model, and what may still be spent on its base state: an answer that cannot be had should not take minutes.
+/// A model, and the work that may still be spent on its base state. Where there is no base state, the search then ends
+/// within seconds.
 struct Effort {
     model: Arc<dyn Model>,
     matrices: Arc<Matrices>,
+    /// Work that is left, in cubes of unknowns.
     left: Cell<f64>,
 }
 
@@ -60,11 +65,14 @@ impl Effort {
         Effort {
             model: model.clone(),
             matrices: matrices.clone(),
-            left: Cell::new(WORTH),
+            left: Cell::new(ALLOWED_WORK),
         }
     }
 
-    /// A solution of a system, or its assembly: either counts as the cube of its unknowns.
+    /// Counts the assembly or the solution of a system as the cube of its `size`.
+    ///
+    /// # Errors
+    /// The work that is allowed is spent.
     fn spend(&self, size: usize) -> std::result::Result<(), Trouble> {
         let left = self.left.get() - (size as f64).powi(3);
         self.left.set(left);
@@ -75,11 +83,11 @@ impl Effort {
     }
 }
 
-/// The base state at the given parameters, those set to `auto` determined on the way; from a neighbouring state where
-/// there is one.
+/// The base state at the given parameters. Those set to `auto` are determined with it. `near` is a neighbouring state, from
+/// which the computation starts.
 ///
 /// # Errors
-/// Says which computation failed and where, and what to try.
+/// There is no base state, or it is not resolved; the message says what failed where, and what to try.
 pub fn solve(
     model: &Arc<dyn Model>,
     parameters: &Parameters,
@@ -92,7 +100,7 @@ pub fn solve(
     } else {
         fixed(&effort, parameters, near, FULL)
     };
-    // Spent on the way, it says nothing about the place where it ran out.
+    // Where the work was spent on the way, the place where it ran out says nothing.
     if solved.is_err() && effort.left.get() < 0.0 {
         let place = "for want of work allowed to it";
         return Err(describe(model.as_ref(), parameters, &Trouble::Spent, place));
@@ -100,7 +108,7 @@ pub fn solve(
     solved
 }
 
-/// The state where every parameter has a value.
+/// The state at parameters none of which is automatic.
 fn fixed(
     effort: &Effort,
     parameters: &Parameters,
@@ -136,7 +144,11 @@ fn fixed(
     state.checked()
 }
 
-/// The state at rising degree until its coefficients have died out.
+/// The state at the lowest degree at which its Chebyshev coefficients have died out to `resolved`, or the best one that the
+/// degrees give.
+///
+/// # Errors
+/// Newton's method fails at two degrees, or the work that is allowed is spent.
 fn refine(
     effort: &Effort,
     parameters: &Parameters,
@@ -151,12 +163,12 @@ fn refine(
     let degrees: &[usize] = if plain.is_point() { &[0] } else { &DEGREES };
     let mut previous = start.cloned();
     let (mut best, mut last, mut failures) = (None, None, 0);
-    // A layer that is followed may ask for less than the state before did.
+    // Start from the degree of the neighbour; one lower where it has a layer, which may widen along the way.
     let first = start.map_or(0, |s| {
         let same = degrees.iter().position(|&d| d >= s.degree).unwrap_or(0);
         same.saturating_sub(usize::from(s.degree > STRETCHED_FROM))
     });
-    // The layer of the state before, where it was hard to resolve.
+    // Keep the stretched coordinate of a neighbour that was hard to resolve.
     let mut space = match start {
         Some(state) if state.degree >= STRETCHED_FROM => plain.like(&state.widened()),
         _ => plain.clone(),
@@ -194,8 +206,8 @@ fn refine(
 }
 
 impl BaseState {
-    /// The same state at the next degree, which truncates and rounds differently; nothing for a closed form,
-    /// or where the degree cannot rise.
+    /// The same state at the next degree, whose truncation and rounding errors differ; `None` for a closed form, at the
+    /// highest degree, or where Newton's method fails there.
     pub fn refined(&self) -> Option<BaseState> {
         let next = DEGREES.iter().find(|&&degree| degree > self.degree)?;
         let solved = !self.series.is_empty() && !self.space.is_point();
@@ -205,14 +217,15 @@ impl BaseState {
         collocated::solve(&effort, &self.parameters, Some(self), degree, space).ok()
     }
 
-    /// The state at parameters next to its own, none of them automatic, at the same degree where that will do.
+    /// The state at parameters that differ little from those of this one, none of them automatic. It has the same degree
+    /// where Newton's method converges at that degree.
     ///
     /// # Errors
     /// As [`solve`].
     pub fn moved(&self, parameters: &Parameters) -> Result<BaseState> {
         let effort = Effort::new(&self.model, self.space.matrices());
-        let own = !self.series.is_empty() && self.case == parameters.case(self.structure());
-        if own {
+        let continues = !self.series.is_empty() && self.case == parameters.case(self.structure());
+        if continues {
             let plain = state::space(self.model.as_ref(), parameters, &effort.matrices)?;
             let space = plain.like(&self.space);
             let degree = self.degree;
@@ -225,7 +238,7 @@ impl BaseState {
     }
 }
 
-/// What to say of a state that was not found.
+/// The error of a base state that cannot be computed, with the parameters and the place of the failure.
 fn describe(model: &dyn Model, parameters: &Parameters, trouble: &Trouble, place: &str) -> Error {
     let structure = model.structure();
     let values: Vec<String> = structure

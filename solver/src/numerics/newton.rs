@@ -1,4 +1,4 @@
-//! Newton's method, damped where that is asked for: every nonlinear system is solved here.
+//! Newton's method, damped where that is asked for. Every nonlinear system of the solver is solved here.
 
 use std::fmt;
 
@@ -6,32 +6,32 @@ use std::fmt;
 pub trait System {
     /// ∂F/∂x, in whatever form its linear solver takes.
     type Jacobian;
-    /// What else is known at a point.
-    type Known;
-    /// What evaluation can fail with.
+    /// What evaluating F yields besides F and its Jacobian, and later steps use.
+    type Byproduct;
+    /// How evaluation can fail.
     type Error: From<Failure>;
 
-    /// F and ∂F/∂x; nothing where x lies outside the domain.
+    /// F and ∂F/∂x at x; `None` where x lies outside the domain of F.
     ///
     /// # Errors
-    /// What ends the iteration for good.
+    /// An error that ends the iteration.
     fn linearise(&mut self, x: &[f64]) -> Result<Option<Linearised<Self>>, Self::Error>;
 
-    /// Whether a step may lead to x at all.
+    /// Whether x lies in the domain, as far as that shows without evaluating F. A step is halved until its end does.
     fn admits(&self, _x: &[f64]) -> bool {
         true
     }
 
-    /// The s with J s = −F; nothing where there is none.
+    /// The step s with J s = −F; `None` where J is singular.
     ///
     /// # Errors
-    /// What ends the iteration for good.
+    /// An error that ends the iteration.
     fn step(&mut self, x: &[f64], at: &Linearised<Self>) -> Result<Option<Vec<f64>>, Self::Error>;
 
-    /// Whether a step is so small that it leads to the solution.
+    /// Whether a step from x is so small that its end counts as the solution.
     fn is_last(&self, x: &[f64], step: &[f64]) -> bool;
 
-    /// Whether F is as good as zero, once a step has been taken.
+    /// Whether F counts as zero at x. Asked for once a step has been taken.
     fn is_solution(&self, _x: &[f64], _at: &Linearised<Self>) -> bool {
         false
     }
@@ -43,8 +43,8 @@ pub struct Linearised<S: System + ?Sized> {
     pub residual: Vec<f64>,
     /// ∂F/∂x
     pub jacobian: S::Jacobian,
-    /// What else is known.
-    pub known: S::Known,
+    /// What evaluating F has yielded besides.
+    pub byproduct: S::Byproduct,
 }
 
 impl<S: System + ?Sized> Linearised<S> {
@@ -59,14 +59,14 @@ impl<S: System + ?Sized> Linearised<S> {
 pub enum Failure {
     /// No part of the step lowers the residual.
     Damping {
-        /// Its size.
+        /// Size of the residual.
         residual: f64,
     },
-    /// The steps that are allowed were not enough.
+    /// The residual has not vanished after all steps that are allowed.
     Steps {
         /// Size of the residual.
         residual: f64,
-        /// How many there were.
+        /// Number of steps.
         steps: usize,
     },
     /// The start lies outside the domain.
@@ -93,17 +93,17 @@ impl fmt::Display for Failure {
 /// How the iteration is run.
 #[derive(Clone, Copy, Debug)]
 pub struct Newton {
-    /// Steps that are allowed.
+    /// Most steps.
     pub most_steps: usize,
-    /// The least part of a step that is tried; one takes every step whole.
+    /// Smallest part of a step that is tried when the step is halved. With 1 every step is taken whole.
     pub least_part: f64,
 }
 
 impl Newton {
-    /// A solution from a start, with what is known there.
+    /// The solution that the iteration reaches from a start, with the system linearised there.
     ///
     /// # Errors
-    /// A [`Failure`], or whatever the system fails with.
+    /// A [`Failure`] of the iteration, or an error of the system.
     pub fn solve<S: System>(
         &self,
         system: &mut S,
@@ -120,13 +120,15 @@ impl Newton {
             loop {
                 let moved = x.iter().zip(&step).map(|(x, s)| x + part * s);
                 let moved: Vec<f64> = moved.collect();
-                // Near the solution rounding may keep the residual from falling.
+                // The last step is taken whole: at the solution rounding may keep the residual from falling. Others have
+                // to lower it by a quarter of the part that a linear system would (Armijo's rule).
                 let enough = |next: &Linearised<S>| {
                     last || self.least_part == 1.0 || next.size() <= (1.0 - 0.25 * part) * at.size()
                 };
-                let next = match system.admits(&moved) {
-                    true => system.linearise(&moved)?.filter(enough),
-                    false => None,
+                let next = if system.admits(&moved) {
+                    system.linearise(&moved)?.filter(enough)
+                } else {
+                    None
                 };
                 if let Some(next) = next {
                     (x, at) = (moved, next);
@@ -134,13 +136,12 @@ impl Newton {
                 }
                 part *= 0.5;
                 if part < self.least_part {
-                    return Err(match self.least_part == 1.0 {
-                        true => Failure::Lost,
-                        false => Failure::Damping {
-                            residual: at.size(),
-                        },
-                    }
-                    .into());
+                    let residual = at.size();
+                    return Err(if self.least_part == 1.0 {
+                        Failure::Lost.into()
+                    } else {
+                        Failure::Damping { residual }.into()
+                    });
                 }
             }
             if last {
@@ -164,14 +165,14 @@ mod tests {
 
     impl System for Arctangent {
         type Jacobian = f64;
-        type Known = ();
+        type Byproduct = ();
         type Error = Failure;
 
         fn linearise(&mut self, x: &[f64]) -> Result<Option<Linearised<Self>>, Failure> {
             Ok((x[0].abs() < 100.0).then(|| Linearised {
                 residual: vec![x[0].atan()],
                 jacobian: 1.0 / (1.0 + x[0] * x[0]),
-                known: (),
+                byproduct: (),
             }))
         }
 

@@ -1,24 +1,24 @@
-//! The mirror symmetry x → −x at k = 0: the mean modes of a steady pattern have no odd part (those of a
-//! wave have: it drives a mean flow).
+//! The mirror symmetry x → −x at k = 0. The mean modes of a steady pattern have no odd part. Those of a wave have one: a
+//! wave drives a mean flow.
 
 use super::{Blocks, Problem};
-use crate::model::{C64, Id, Table};
-use crate::numerics::Applied;
+use crate::model::{Id, Table};
 use crate::numerics::dense::{Factorised, Scalar, norm, scaled};
+use crate::numerics::{Applied, arbitrary};
 use crate::space::Block;
 use faer::Mat;
 
-/// Powers of the inverse by which a distance from singularity is estimated.
+/// Number of inverse iterations by which a distance from singularity is estimated. The last half of them is averaged.
 const POWERS: usize = 16;
 
-/// The equations and unknowns of the even fields among those of the problem bordered at k = 0.
+/// Positions of the even equations and unknowns in the problem bordered at k = 0. There are as many of either.
 pub struct EvenPart {
     rows: Vec<usize>,
     columns: Vec<usize>,
 }
 
 impl Problem {
-    /// The even part of the problem at k = 0, where there is the symmetry.
+    /// The even part of the problem at k = 0; `None` without the symmetry, or where equations and unknowns differ in number.
     pub fn even_part(&self) -> Option<EvenPart> {
         let parity = self.structure().parity.as_ref()?;
         let layout = &self.direct.layout;
@@ -40,15 +40,15 @@ impl Problem {
     }
 }
 
-/// Positions of the odd, or of the even, among blocks.
-fn positions<I: Id>(odd: &Table<I, bool>, blocks: &Table<I, Block>, which: bool) -> Vec<usize> {
+/// Positions in the blocks of one parity: of the odd blocks where `parity` is true, else of the even ones.
+fn positions<I: Id>(odd: &Table<I, bool>, blocks: &Table<I, Block>, parity: bool) -> Vec<usize> {
     let blocks = odd.iter().zip(blocks.iter());
-    let chosen = blocks.filter(|(odd, _)| **odd == which);
+    let chosen = blocks.filter(|(odd, _)| **odd == parity);
     chosen.flat_map(|(_, block)| block.range()).collect()
 }
 
 impl Problem {
-    /// Unknowns that change sign in the mirror, and equations that do.
+    /// Positions of the unknowns that change sign in the mirror, then of the equations that do.
     pub fn odd_positions(&self) -> (Vec<usize>, Vec<usize>) {
         let Some(parity) = &self.structure().parity else {
             return (Vec::new(), Vec::new());
@@ -63,7 +63,7 @@ impl Problem {
     }
 }
 
-/// A system factorised whole, or in its even part alone.
+/// A factorised system A x = b, or the even part of one.
 pub struct Solver<T: Scalar> {
     factors: Factorised<T>,
     part: Option<EvenPart>,
@@ -71,7 +71,7 @@ pub struct Solver<T: Scalar> {
 }
 
 impl<T: Scalar> Solver<T> {
-    /// Of the whole matrix.
+    /// Factorises the whole matrix.
     pub fn whole(matrix: Mat<T>) -> Self {
         Solver {
             size: matrix.nrows(),
@@ -80,24 +80,24 @@ impl<T: Scalar> Solver<T> {
         }
     }
 
-    /// Of the even part, odd unknowns being zero.
+    /// Factorises the even part. Odd unknowns of a solution are zero.
     pub fn even(matrix: &Mat<T>, part: EvenPart) -> Self {
         let n = part.rows.len();
-        let mut own = Mat::zeros(n, n);
+        let mut even = Mat::zeros(n, n);
         for (j, &column) in part.columns.iter().enumerate() {
             let source = matrix.col_as_slice(column);
-            for (target, &row) in own.col_as_slice_mut(j).iter_mut().zip(&part.rows) {
+            for (target, &row) in even.col_as_slice_mut(j).iter_mut().zip(&part.rows) {
                 *target = source[row];
             }
         }
         Solver {
             size: matrix.nrows(),
-            factors: Factorised::new(own),
+            factors: Factorised::new(even),
             part: Some(part),
         }
     }
 
-    /// A⁻¹ b, or nothing where A is singular.
+    /// A⁻¹ b; `None` where A is singular.
     pub fn solve(&self, right: &[T]) -> Option<Vec<T>> {
         let Some(part) = &self.part else {
             return self.factors.solve_regular(right);
@@ -110,11 +110,12 @@ impl<T: Scalar> Solver<T> {
         Some(solution)
     }
 
-    /// The distance of the shift from the nearest eigenvalue, by the growth of (σ M0 − L)⁻ⁿ; to a few parts
-    /// in a hundred.
+    /// The distance of σ from the nearest eigenvalue of L, in units of σ, to a few parts in a hundred.
+    ///
+    /// ‖((σ M0 − L)⁻¹ M0)ⁿ x‖ grows like |σ − c|⁻ⁿ with the nearest eigenvalue c: the distance is the inverse of the mean
+    /// growth factor.
     pub fn distance(&self, mass: &Blocks<T>) -> f64 {
-        let entry = |i: usize| T::from_complex(C64::new(1.0 + 0.37 * ((i * i) as f64).sin(), 0.0));
-        let mut x: Vec<T> = (0..mass.size()).map(entry).collect();
+        let mut x: Vec<T> = arbitrary(mass.size());
         let mut sizes = Vec::with_capacity(POWERS);
         for _ in 0..POWERS {
             let size = norm(&x);

@@ -19,7 +19,7 @@ pub use block::Blocks;
 pub use closure::Border;
 pub use linear::{Adjoint, Combination, Direct, LinearProblem, WallRow, symbol};
 pub use mirror::Solver;
-pub use presence::Known;
+pub use presence::Sources;
 
 use crate::base::BaseState;
 use crate::error::{Error, Result};

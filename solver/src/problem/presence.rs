@@ -1,8 +1,8 @@
-//! Which fields a mode has: what rounding leaves of the others in its vector is put to zero.
+//! Sets to zero the fields that take no part in a mode.
 //!
-//! A wave of one velocity component alone, say, knows nothing of the others, and every product with them vanishes; a
-//! force that is a gradient makes a pressure and no flow. Left as noise, such fields would make a c2 of noise, for
-//! which no resolution is enough.
+//! A wave of one velocity component has no other component, and every product with these vanishes. A force that is a
+//! gradient makes a pressure and no flow. A solved vector holds rounding noise in such fields; products of that noise
+//! would give a c2 that never converges.
 
 use super::{Blocks, Border, Problem};
 use crate::model::{C64, FieldId, Table};
@@ -11,34 +11,35 @@ use crate::numerics::{Applied, Noise};
 use crate::space::Block;
 use crate::wavevector::WaveVector;
 
-/// The least noise, in units of the machine's precision; without a cross-stream coordinate it is that.
+/// The least noise, in units of the machine's precision: M³ at M = 5, and the noise where there is no cross-stream
+/// coordinate.
 const LEAST: f64 = 125.0;
 
-/// The part of a row below which a solved field is its rounding: some ten times what second derivatives near the walls
-/// leave by observation.
+/// Size below which a field counts as noise, relative to what stands beside it in a row: ε M³. Second derivatives near a
+/// wall amplify rounding by about M³/10, as observed, so that there is a factor of ten to spare.
 fn noise(resolution: Option<usize>) -> f64 {
     f64::EPSILON * resolution.map_or(LEAST, |m| LEAST.max((m as f64).powi(3)))
 }
 
-/// Terms of the rows, balances, then walls, then closures, from which fields are told to be there.
-pub struct Known {
-    /// Fields that are there for certain.
+/// What is certain to be present in a problem, and from which the presence of fields follows.
+pub struct Sources {
+    /// Fields that are certain to be present.
     pub fields: Vec<FieldId>,
-    /// What rows hold besides fields: the size of a forcing.
+    /// Size of the forcing in each row: balances, then walls, then closures.
     pub rows: Vec<f64>,
 }
 
 impl Problem {
-    /// Puts to zero, in a vector of the solver's basis, fields that count in no row to which something else contributes:
-    /// known fields, a forcing, or fields that count next to these.
-    pub fn clear_absent(&self, k: WaveVector, shift: C64, values: &mut [C64], known: Known) {
+    /// Sets absent fields to zero in a vector of the solver's basis, with one value an unknown. A field is present where
+    /// it is more than noise in a row of σ M0 − L beside the sources or beside another field that is present.
+    pub fn clear_absent(&self, k: WaveVector, shift: C64, values: &mut [C64], sources: Sources) {
         let columns = &self.direct.layout.columns;
         let largest = columns.map(|block| largest(block.of(values)));
         let mut shares = self.direct.shares(k, shift, &largest);
         if k.is_mean() {
             shares.extend(self.closure_shares(&largest));
         }
-        let present = self.present(known, &shares);
+        let present = self.present(sources, &shares);
         for (field, block) in columns.pairs() {
             if !present.contains(&field) {
                 values[block.range()].fill(C64::new(0.0, 0.0));
@@ -46,7 +47,7 @@ impl Problem {
         }
     }
 
-    /// What a field of a given size adds at most to the row of each closure.
+    /// The most that a field of a given size contributes to the row of each closure.
     fn closure_shares(&self, largest: &Table<FieldId, f64>) -> Vec<Table<FieldId, f64>> {
         let columns = &self.direct.layout.columns;
         let share = |border: &Border| {
@@ -59,8 +60,9 @@ impl Problem {
         self.borders.iter().map(share).collect()
     }
 
-    /// The field that an eigenvector has for certain: the one with the largest part of yᴴ M0 x, whatever the units.
-    pub fn carrier<T: Scalar>(&self, mass: &Blocks<T>, right: &[T], left: &[T]) -> Known {
+    /// The field that is certain to be present in an eigenvector: the one with the largest part of yᴴ M0 x, which does not
+    /// depend on units.
+    pub fn carrier<T: Scalar>(&self, mass: &Blocks<T>, right: &[T], left: &[T]) -> Sources {
         let weights = mass.apply_adjoint(left);
         let part = |block: &Block| -> f64 {
             let pairs = block.of(&weights).iter().zip(block.of(right));
@@ -69,20 +71,20 @@ impl Problem {
         let parts = self.direct.layout.columns.pairs();
         let parts = parts.map(|(field, block)| (field, part(block)));
         let most = parts.max_by(|a, b| a.1.total_cmp(&b.1));
-        Known {
+        Sources {
             fields: most.map(|(field, _)| field).into_iter().collect(),
-            ..Known::nothing(self)
+            ..Sources::none(self)
         }
     }
 
-    /// The known fields with all that count beside them, row by row.
-    fn present(&self, known: Known, shares: &[Table<FieldId, f64>]) -> Vec<FieldId> {
-        // Data that are disturbed leave more of an absent field.
+    /// The fields that are present, `shares[row][field]` being the most that a field contributes to a row.
+    fn present(&self, sources: Sources, shares: &[Table<FieldId, f64>]) -> Vec<FieldId> {
+        // Disturbed data leave more noise in an absent field than rounding does.
         let disturbed = self.noise.map_or(1.0, |_| Noise::SIZE / f64::EPSILON);
         let noise = disturbed * noise(self.resolution);
-        let Known { mut fields, rows } = known;
+        let Sources { mut fields, rows } = sources;
         loop {
-            // Beside what is known, in the row in which it counts most.
+            // Share of the row beside the sources and the fields present, in the row where it is largest.
             let weight = |field: FieldId| {
                 let parts = rows.iter().zip(shares).map(|(forcing, row)| {
                     let beside = forcing + fields.iter().map(|&f| row[f]).sum::<f64>();
@@ -94,11 +96,11 @@ impl Problem {
                 });
                 parts.fold(0.0, f64::max)
             };
-            let others = self.direct.layout.columns.ids();
-            let others = others.filter(|field| !fields.contains(field));
-            // The weightiest first: next to it another may be noise.
-            let most = others.map(|field| (field, weight(field)));
-            match most.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            let candidates = self.direct.layout.columns.ids();
+            let candidates = candidates.filter(|field| !fields.contains(field));
+            // The one of largest share first: beside it the next one may be noise.
+            let parts = candidates.map(|field| (field, weight(field)));
+            match parts.max_by(|a, b| a.1.total_cmp(&b.1)) {
                 Some((field, weight)) if weight > noise => fields.push(field),
                 _ => return fields,
             }
@@ -106,28 +108,29 @@ impl Problem {
     }
 }
 
-impl Known {
-    fn nothing(problem: &Problem) -> Self {
+impl Sources {
+    fn none(problem: &Problem) -> Self {
         let (rows, walls) = (&problem.direct.layout.rows, &problem.direct.walls);
         let rows = rows.len() + walls.len() + problem.borders.len();
-        Known {
+        Sources {
             fields: Vec::new(),
             rows: vec![0.0; rows],
         }
     }
 
-    /// A forcing of the equations, and of the closures where these are forced.
+    /// The forcing of a problem: right-hand sides of balances and boundary conditions, and of the closures, none of which
+    /// where `closures` is empty.
     pub fn forcing(problem: &Problem, right: &[C64], closures: &[C64]) -> Self {
-        let mut known = Known::nothing(problem);
-        known.add(problem, right, 1.0);
-        let first = known.rows.len() - problem.borders.len();
-        for (sum, value) in known.rows[first..].iter_mut().zip(closures) {
+        let mut sources = Sources::none(problem);
+        sources.add(problem, right, 1.0);
+        let first = sources.rows.len() - problem.borders.len();
+        for (sum, value) in sources.rows[first..].iter_mut().zip(closures) {
             *sum += value.norm();
         }
-        known
+        sources
     }
 
-    /// A multiplier or unknown number of some size, with all that its column and the corner carry.
+    /// Adds a multiplier or unknown number of a given size: its column in the equations, its corner in the closures.
     pub fn add_border(&mut self, problem: &Problem, border: &Border, size: f64) {
         self.add(problem, &border.column, size);
         let first = self.rows.len() - problem.borders.len();
@@ -136,7 +139,7 @@ impl Known {
         }
     }
 
-    /// A column of the equations, times a number of some size.
+    /// Adds the sizes of a column of the equations, times a factor.
     pub fn add<T: Scalar>(&mut self, problem: &Problem, column: &[T], factor: f64) {
         let layout = &problem.direct.layout;
         let rows = layout.rows.iter().map(|block| largest(block.of(column)));

@@ -7,13 +7,14 @@ use crate::numerics::{Applied, beside, inverse_iteration};
 use crate::problem::{Combination, Problem, Turned};
 use crate::wavevector::WaveVector;
 
-/// The mode that continues `near`, if the iteration finds one.
+/// The mode to which inverse iteration converges from `near`, a mode of the same layout; `None` where it does not.
 pub(super) fn continued(problem: &Problem, k: WaveVector, near: &EigenPair) -> Option<EigenPair> {
     let shift = predict(problem, k, near);
     refine(problem, k, shift, near.scale, &near.right, &near.left)
 }
 
-/// yᴴ L x / yᴴ M0 x with the vectors found nearby: off by the square of the distance.
+/// A shift beside yᴴ L x / yᴴ M0 x, with the vectors of `near`. The error of that eigenvalue is quadratic in the error of
+/// the vectors.
 fn predict(problem: &Problem, k: WaveVector, near: &EigenPair) -> C64 {
     let c = if problem.is_real() && near.c.im == 0.0 {
         quotient::<f64>(problem, k, near)
@@ -23,6 +24,7 @@ fn predict(problem: &Problem, k: WaveVector, near: &EigenPair) -> C64 {
     beside(if c.norm().is_finite() { c } else { near.c }, near.scale)
 }
 
+/// yᴴ L x / yᴴ M0 x at k with the vectors of `near`.
 fn quotient<T: Scalar>(problem: &Problem, k: WaveVector, near: &EigenPair) -> C64 {
     let (right, left): (Vec<T>, Vec<T>) = (scalars(&near.right), scalars(&near.left));
     let operator = problem.direct.blocks::<T>(k, Combination::OPERATOR);
@@ -30,7 +32,7 @@ fn quotient<T: Scalar>(problem: &Problem, k: WaveVector, near: &EigenPair) -> C6
     above / dot(&left, &problem.direct.mass::<T>(k).apply(&right))
 }
 
-/// |cosine| of the angle between two shapes.
+/// |Cosine| of the angle between two vectors; zero where their lengths differ.
 pub fn likeness(a: &[C64], b: &[C64]) -> f64 {
     if a.len() != b.len() {
         return 0.0;
@@ -56,6 +58,7 @@ pub(super) fn refine(
     iterate::<C64>(problem, k, shift, scale, (right, left))
 }
 
+/// [`refine`] in the arithmetic of `T`.
 fn iterate<T: Scalar>(
     problem: &Problem,
     k: WaveVector,
@@ -66,21 +69,22 @@ fn iterate<T: Scalar>(
     let starts = (phased::<T>(right), phased(left));
     let shifted = problem.shifted::<T>(k, shift);
     let mass = problem.direct.mass::<T>(k);
-    let found = inverse_iteration(shifted, &mass, shift, scale, starts)?;
-    let known = problem.carrier(&mass, &found.right, &found.left);
-    let mut right = Turned(found.right).complex();
-    let left = Turned(found.left).complex();
-    problem.clear_absent(k, found.c, &mut right, known);
+    let eigen = inverse_iteration(shifted, &mass, shift, scale, starts)?;
+    let sources = problem.carrier(&mass, &eigen.right, &eigen.left);
+    let mut right = Turned(eigen.right).complex();
+    let left = Turned(eigen.left).complex();
+    problem.clear_absent(k, eigen.c, &mut right, sources);
     Some(EigenPair {
         k,
-        c: found.c,
+        c: eigen.c,
         right,
         left,
         scale,
     })
 }
 
-/// A vector with its largest entry turned real: a real mode may come with a complex factor.
+/// A vector turned so that its largest entry is real. A real mode may come with a complex factor, which real arithmetic
+/// would cut off.
 fn phased<T: Scalar>(x: &[C64]) -> Vec<T> {
     let largest = x
         .iter()

@@ -12,57 +12,63 @@ pub use scout::{Ground, Leader, Scout};
 
 use crate::error::{Error, Result};
 use crate::model::C64;
-use crate::numerics::beside;
+use crate::numerics::{arbitrary, beside};
 use crate::pencil::{Mode, Reduced};
 use crate::problem::{Problem, Turned};
 use crate::wavevector::WaveVector;
 use iteration::refine;
 
-/// Cosine between a mode and its continuation below which it counts as another mode.
+/// |Cosine| of the angle between a mode and its continuation below which that counts as another mode. Neighbouring
+/// wavenumbers or collocations give nearly one, different modes mostly far less.
 const SAME_SHAPE: f64 = 0.6;
-/// Eigenvalues below this part of the rates that their terms have are zero.
+/// Eigenvalues below this part of the rates of the terms in L are zero. It is 4500 times the machine's precision, for high
+/// derivatives amplify rounding.
 const ZERO: f64 = 1e-12;
-/// Two eigenvalues nearer than this, relative to themselves or the scale of the slow ones, are one that is
-/// not simple: rounding splits a defective one by the root of the machine's precision.
+/// Two eigenvalues nearer than this, relative to themselves or to the scale of the slow ones, are a single one that is not
+/// simple: rounding splits a defective eigenvalue by the root of the machine's precision, 1.5 · 10⁻⁸, times a constant.
 const SIMPLE: f64 = 1e-7;
 
 /// An eigenvalue with right and left eigenvectors, in the solver's basis.
 #[derive(Clone, Debug)]
 pub struct EigenPair {
-    /// Its wavenumber.
+    /// Wavenumber.
     pub k: WaveVector,
-    /// The eigenvalue, e^{ct}.
+    /// Eigenvalue c0: the mode grows like e^{ct}.
     pub c: C64,
-    /// L x = c M0 x, boundary rows included.
+    /// x with L x = c M0 x, of norm 1. One value an unknown of the direct problem, without multipliers of closures.
     pub right: Turned,
-    /// yᴴ L = c yᴴ M0, boundary rows included.
+    /// y with yᴴ L = c yᴴ M0, of norm 1. One value an equation of the direct problem, boundary conditions included.
     pub left: Turned,
-    /// The unit of time of the spectrum around it.
+    /// Size of the slow eigenvalues in the spectrum around c, in units of c, see [`unit_of_time`].
     pub scale: f64,
 }
 
-/// All finite eigenvalues by decreasing real part.
+/// All finite eigenvalues of L at k, by decreasing real part.
 ///
 /// # Errors
-/// A pencil that is singular for every c (a gauge that the spec does not name).
+/// The pencil is singular for every c (a gauge that the spec does not name), or the iteration does not converge.
 pub fn eigenvalues(problem: &Problem, k: WaveVector) -> Result<Spectrum> {
-    match (k.is_mean(), problem.is_real()) {
-        (true, _) => Reduced::<f64>::new(problem.bordered_pencil())?.eigenvalues(),
-        (false, true) => Reduced::<f64>::new(problem.direct.pencil(k))?.eigenvalues(),
-        (false, false) => Reduced::<C64>::new(problem.direct.pencil(k))?.eigenvalues(),
+    if k.is_mean() {
+        Reduced::<f64>::new(problem.bordered_pencil())?.eigenvalues()
+    } else if problem.is_real() {
+        Reduced::<f64>::new(problem.direct.pencil(k))?.eigenvalues()
+    } else {
+        Reduced::<C64>::new(problem.direct.pencil(k))?.eigenvalues()
     }
 }
 
-/// Finite eigenvalues of the separately discretised adjoint, by decreasing real part.
+/// All finite eigenvalues of the separately discretised L† at k, by decreasing real part.
 ///
 /// # Errors
-/// As [`eigenvalues`], and where the model has no adjoint boundary conditions.
+/// As [`eigenvalues`], or the model has no adjoint boundary conditions.
 pub fn adjoint_eigenvalues(problem: &Problem, k: WaveVector) -> Result<Spectrum> {
     let adjoint = problem.adjoint()?;
-    match (k.is_mean(), problem.is_real()) {
-        (true, _) => Reduced::<f64>::new(problem.bordered_adjoint_pencil()?)?.eigenvalues(),
-        (false, true) => Reduced::<f64>::new(adjoint.pencil(k))?.eigenvalues(),
-        (false, false) => Reduced::<C64>::new(adjoint.pencil(k))?.eigenvalues(),
+    if k.is_mean() {
+        Reduced::<f64>::new(problem.bordered_adjoint_pencil()?)?.eigenvalues()
+    } else if problem.is_real() {
+        Reduced::<f64>::new(adjoint.pencil(k))?.eigenvalues()
+    } else {
+        Reduced::<C64>::new(adjoint.pencil(k))?.eigenvalues()
     }
 }
 
@@ -75,20 +81,15 @@ fn eigenvectors(problem: &Problem, k: WaveVector) -> Result<(Spectrum, Vec<Mode>
     }
 }
 
-/// The leading mode.
+/// The leading mode, whose growth rate is largest.
 ///
 /// # Errors
-/// A spectrum that cannot be computed, an eigenvalue that is not simple, or a mode that inverse iteration
-/// does not confirm.
+/// The spectrum cannot be computed, the eigenvalue is not simple, or inverse iteration does not converge to it.
 pub fn leading(problem: &Problem, k: WaveVector) -> Result<EigenPair> {
     let spectrum = eigenvalues(problem, k)?;
     let c = *spectrum.values.first().ok_or_else(no_modes)?;
-    confirm(
-        problem,
-        k,
-        &spectrum,
-        (c, arbitrary(problem.direct.layout.size)),
-    )
+    let start = arbitrary(problem.direct.layout.size);
+    confirm(problem, k, &spectrum, (c, Turned(start)))
 }
 
 /// The mode nearest to a given eigenvalue.
@@ -99,7 +100,7 @@ pub fn nearest(problem: &Problem, k: WaveVector, target: C64) -> Result<EigenPai
     nearest_in(problem, k, &eigenvalues(problem, k)?, target)
 }
 
-/// The mode nearest to a given eigenvalue, of a spectrum that is at hand.
+/// The mode nearest to a given eigenvalue; `spectrum` holds all eigenvalues at k.
 ///
 /// # Errors
 /// As [`leading`].
@@ -114,18 +115,14 @@ pub fn nearest_in(
         .iter()
         .min_by(|a, b| (*a - target).norm().total_cmp(&(*b - target).norm()))
         .ok_or_else(no_modes)?;
-    confirm(
-        problem,
-        k,
-        spectrum,
-        (c, arbitrary(problem.direct.layout.size)),
-    )
+    let start = arbitrary(problem.direct.layout.size);
+    confirm(problem, k, spectrum, (c, Turned(start)))
 }
 
 /// The continuation of a mode to another wavenumber or base state, by its shape.
 ///
 /// # Errors
-/// Where no mode has a similar shape.
+/// No mode has a similar shape, or the one that has is not simple or not confirmed, as in [`leading`].
 pub fn follow(problem: &Problem, k: WaveVector, near: &EigenPair) -> Result<EigenPair> {
     if near.right.len() == problem.direct.layout.size
         && let Some(pair) = iteration::continued(problem, k, near)
@@ -145,21 +142,22 @@ pub fn follow(problem: &Problem, k: WaveVector, near: &EigenPair) -> Result<Eige
     confirm(problem, k, &spectrum, (mode.0, Turned(mode.1)))
 }
 
-/// The mode `pair` of one collocation found again on another, from its interpolated shape.
+/// The mode of the collocation `to` that is the mode `pair` of the collocation `from`: by its interpolated shape, or else
+/// by its eigenvalue.
 ///
 /// # Errors
-/// Where the other collocation has no such mode.
+/// As [`nearest`].
 pub fn transferred(from: &Problem, pair: &EigenPair, to: &Problem) -> Result<EigenPair> {
     let shape = interpolated(from, &pair.right, to);
-    let start = arbitrary(shape.len());
+    let start = Turned(arbitrary(shape.len()));
     let shift = beside(pair.c, pair.scale);
     match refine(to, pair.k, shift, pair.scale, &shape, &start) {
-        Some(found) if likeness(&shape, &found.right) > SAME_SHAPE => Ok(found),
+        Some(refined) if likeness(&shape, &refined.right) > SAME_SHAPE => Ok(refined),
         _ => nearest(to, pair.k, pair.c),
     }
 }
 
-/// A vector of one collocation at the points of another.
+/// Values of the unknowns of one collocation, interpolated to the points of another.
 pub fn interpolated(from: &Problem, values: &Turned, to: &Problem) -> Turned {
     let (old, new) = (&from.direct.layout, &to.direct.layout);
     let mut shape = Turned(vec![C64::new(0.0, 0.0); new.size]);
@@ -170,7 +168,7 @@ pub fn interpolated(from: &Problem, values: &Turned, to: &Problem) -> Turned {
     shape
 }
 
-/// The mode at −k that is the mirror image of one at k, in a model with the symmetry.
+/// The mode at −k that is the mirror image of a mode at k, in a model with the mirror symmetry.
 pub fn mirror_image(problem: &Problem, pair: &EigenPair) -> EigenPair {
     let mut image = EigenPair {
         k: -pair.k,
@@ -186,18 +184,12 @@ pub fn mirror_image(problem: &Problem, pair: &EigenPair) -> EigenPair {
     image
 }
 
-/// A vector that is orthogonal to none that matters.
-fn arbitrary(size: usize) -> Turned {
-    let entry = |i: usize| C64::new(1.0 + 0.37 * ((i * i) as f64).sin(), 0.0);
-    Turned((0..size).map(entry).collect())
-}
-
 fn no_modes() -> Error {
     Error::computation("the linear problem has no finite eigenvalue")
 }
 
-/// The scale of the slow part of a spectrum, or the rate of the slowest balance where the eigenvalues are zero to
-/// rounding beside it.
+/// The size of the slow eigenvalues of a spectrum, in units of these: [`Spectrum::scale`], or the rate of the slowest
+/// balance where the eigenvalues are zero to rounding beside it.
 pub fn unit_of_time(problem: &Problem, k: WaveVector, spectrum: &Spectrum) -> f64 {
     let (scale, rate) = (spectrum.scale(), problem.rate(k));
     if rate.is_finite() && scale <= ZERO * rate {
@@ -207,7 +199,10 @@ pub fn unit_of_time(problem: &Problem, k: WaveVector, spectrum: &Spectrum) -> f6
     }
 }
 
-/// The mode after inverse iteration, where its eigenvalue is simple.
+/// The mode of the eigenvalue c, by inverse iteration from `right`.
+///
+/// # Errors
+/// The eigenvalue is not simple, or the iteration does not converge to it.
 fn confirm(
     problem: &Problem,
     k: WaveVector,
@@ -221,8 +216,9 @@ fn confirm(
         return Err(Error::NotSimple { c, k: k.k(), gap });
     }
     // The left vector comes from the iteration itself; any start that is not orthogonal will do.
-    let start = arbitrary(right.len());
+    let start = Turned(arbitrary(right.len()));
     refine(problem, k, beside(c, scale), scale, &right, &start).ok_or_else(|| {
+        // A gap below 10⁻³ of the eigenvalue marks a cluster: discrete modes lie further apart.
         let advice = if gap < 1e-3 * c.norm().max(scale) {
             "it lies in a cluster of others, as those of a continuous spectrum do: another mode (--near) or a larger M"
         } else {

@@ -11,26 +11,28 @@
 //! Otherwise the full spectrum at M decides.
 
 use super::iteration::{continued, refine};
-use super::{EigenPair, arbitrary, confirm, eigenvalues, no_modes};
+use super::{EigenPair, confirm, eigenvalues, no_modes};
 use crate::error::Result;
 use crate::model::C64;
-use crate::numerics::beside;
+use crate::numerics::{arbitrary, beside};
 use crate::pencil::Spectrum;
-use crate::problem::Problem;
+use crate::problem::{Problem, Turned};
 use crate::wavevector::WaveVector;
 
 /// Eigenvalues, by decreasing growth rate, whose excess is measured.
 const RANKS: usize = 4;
 /// Those below the first that are tested.
 const TESTED: usize = 2;
-/// Part of the excess, and of its change between two gauges, that is allowed for besides.
+/// Factor of e_j in the allowance E_j that is added to its larger value.
 const PART: f64 = 0.1;
+/// Factor of |e_j − e_j'| in the allowance E_j: between two gauges e_j may leave their interval by three times its length.
 const CHANGE: f64 = 3.0;
-/// The least excess, relative to the slow eigenvalues: two modes that are closer are told apart by the full spectrum.
+/// The least allowance, relative to the scale of the slow eigenvalues. Two modes that are closer are told apart by the full
+/// spectrum.
 const LEAST: f64 = 1e-6;
-/// M over the resolution of the scout.
+/// M over the resolution of the scout: a spectrum costs the cube, a third of M then a twenty-seventh.
 const COARSER: usize = 3;
-/// Unknowns below which a full spectrum costs no more than scouting does.
+/// Unknowns up to which a full spectrum costs no more than scouting does.
 const SMALL: usize = 48;
 
 /// The leading eigenvalue at one place.
@@ -84,7 +86,7 @@ impl Scout {
         leader(ground.fine, k, &spectrum)
     }
 
-    /// Keeps by how much each rank of one spectrum exceeds that of the other.
+    /// Records by how much each rank of the fine spectrum exceeds that of the coarse one.
     fn learn(&mut self, index: usize, fine: &Spectrum, coarse: &Spectrum) {
         let pairs = fine.values.iter().zip(&coarse.values).take(RANKS);
         let excess = pairs.map(|(f, c)| (f.re - c.re).max(0.0)).collect();
@@ -148,7 +150,7 @@ impl Scout {
                 Some(near) => near.scale,
                 None => spectrum.scale(),
             };
-            let start = arbitrary(ground.fine.direct.layout.size);
+            let start = Turned(arbitrary(ground.fine.direct.layout.size));
             let shift = beside(top, scale);
             refine(ground.fine, k, shift, scale, &start, &start).filter(accepted)
         })
@@ -160,8 +162,8 @@ impl Scout {
         let least = (c - top).norm().max(LEAST * coarse.scale());
         // Its complex conjugate grows at the same rate.
         let has_conjugate = c.im != 0.0 && coarse.values.get(1) == Some(&top.conj());
-        let others = coarse.values.iter().enumerate();
-        others
+        let ranks = coarse.values.iter().enumerate();
+        ranks
             .skip(if has_conjugate { 2 } else { 1 })
             .take(TESTED)
             .all(|(rank, v)| v.re + least.max(self.allowance(index, rank)) < c.re)
@@ -171,7 +173,7 @@ impl Scout {
 /// The first eigenvalue of a full spectrum, with its mode.
 fn leader(problem: &Problem, k: WaveVector, spectrum: &Spectrum) -> Result<Leader> {
     let value = *spectrum.values.first().ok_or_else(no_modes)?;
-    let start = arbitrary(problem.direct.layout.size);
+    let start = Turned(arbitrary(problem.direct.layout.size));
     let pair = confirm(problem, k, spectrum, (value, start));
     Ok(Leader {
         // Inverse iteration knows the eigenvalue better than the full spectrum does.
@@ -188,7 +190,7 @@ mod tests {
         Spectrum::new(values.iter().map(|&re| C64::new(re, 0.0)).collect())
     }
 
-    /// A second mode that the coarse collocation damps too much by 0.3 at one gauge and by 0.4 at the other leaves a doubt while it
+    /// A second mode that the coarse collocation damps too much by 0.3 at one gauge and by 0.4 at the next leaves a doubt while it
     /// is less than 0.44 + 0.3 below the first.
     #[test]
     fn an_excess_that_was_seen_is_allowed_for() {

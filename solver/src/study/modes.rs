@@ -52,7 +52,7 @@ impl Modes {
         let problem = point.problem.as_ref();
         let places = problem.space().evenly(HEIGHTS);
         let expansion = Expansion::to(&point.problem, vec![point.pair.clone()], 3)?;
-        let known = expansion.known().into_iter();
+        let known = expansion.coefficients().into_iter();
         let own = known.filter(|(monomial, _)| monomial.z >= monomial.conj);
         let mut profiles: Vec<ModeProfile> = own
             .map(|(monomial, mode)| {

@@ -5,7 +5,8 @@ use crate::measured::{Decided, Measured};
 use crate::model::C64;
 use nalgebra::{DMatrix, DVector};
 
-/// A Padé approximant's amplitude whose error is a larger part of it is not decided.
+/// The amplitude of a Padé approximant whose error exceeds this part of it is not decided: its error bar is linear, which
+/// does not hold for changes as large as the amplitude.
 const UNDECIDED: f64 = 0.5;
 
 /// c0, c2, c4, … with their absolute errors.
@@ -91,21 +92,25 @@ impl AmplitudeEquation {
             .map(|c| Measured::new(c.value.norm(), c.error))
             .collect();
         let last = 2 * sizes.len();
-        let known = |n: usize, size: Measured| match size.is_positive() {
-            true => Ok(size),
-            false => Err(zero(n)),
+        let nonzero = |n: usize, size: Measured| {
+            if size.is_positive() {
+                Ok(size)
+            } else {
+                Err(zero(n))
+            }
         };
         let root = |a: Measured, b: Measured| {
-            let quotient = known(last, b).map(|b| a.over(b));
+            let quotient = nonzero(last, b).map(|b| a.over(b));
             quotient?.and_then(Measured::sqrt).ok_or_else(|| zero(last))
         };
-        // |c_n/c_{n+1}| in A²; over two steps where there are, for the sign of singularities off the axis swings.
+        // radius² = |c_n/c_{n+2}|, or √|c_n/c_{n+4}| where there are that many: coefficients of a series whose singularities
+        // lie off the real axis change sign irregularly, and two steps average over it.
         match sizes.as_slice() {
             [.., a, _, b] => {
-                let square = root(known(last - 4, *a)?, *b)?;
+                let square = root(nonzero(last - 4, *a)?, *b)?;
                 square.sqrt().ok_or_else(|| zero(last))
             }
-            [a, b] => root(known(last - 2, *a)?, *b),
+            [a, b] => root(nonzero(last - 2, *a)?, *b),
             _ => Err("an estimate needs order 5".to_owned()),
         }
     }
@@ -158,21 +163,26 @@ fn smallest_root(coefficients: &[f64]) -> Option<f64> {
         .map(|n| coefficients[n] * unit.powi(n as i32))
         .collect();
     let last = scaled[degree];
-    let companion = DMatrix::from_fn(degree, degree, |i, j| match j + 1 == degree {
-        true => -scaled[i] / last,
-        false => f64::from(u8::from(i == j + 1)),
+    let companion = DMatrix::from_fn(degree, degree, |i, j| {
+        if j + 1 == degree {
+            -scaled[i] / last
+        } else {
+            f64::from(u8::from(i == j + 1))
+        }
     });
     let value = |e: f64| scaled.iter().rev().fold(0.0, |sum, c| sum * e + c);
     let slope = |e: f64| {
         let terms = scaled.iter().enumerate().skip(1).rev();
         terms.fold(0.0, |sum, (n, c)| sum * e + n as f64 * c)
     };
+    // A double root splits by the root of the machine's precision, about 10⁻⁸.
     let real = |root: &nalgebra::Complex<f64>| {
         (root.im.abs() <= 1e-7 * root.norm() && root.re > 0.0).then_some(root.re)
     };
     let roots = companion.complex_eigenvalues();
-    let found = roots.iter().filter_map(real).min_by(f64::total_cmp)?;
-    let polished = (0..4).fold(found, |e, _| match slope(e) {
+    let smallest = roots.iter().filter_map(real).min_by(f64::total_cmp)?;
+    // Newton's method takes away the rounding of the eigenvalue problem.
+    let polished = (0..4).fold(smallest, |e, _| match slope(e) {
         0.0 => e,
         slope => e - value(e) / slope,
     });
@@ -228,9 +238,9 @@ mod tests {
     #[test]
     fn equilibria_by_order() {
         // (1 − E)(2 − E) = 2 − 3 E + E²
-        let found = equation(&[2.0, -3.0, 1.0]);
-        assert!((found.equilibrium(5).expect("a root").value - 1.0).abs() < 1e-14);
-        let cubic = found.equilibrium(3).expect("a root").value;
+        let quintic = equation(&[2.0, -3.0, 1.0]);
+        assert!((quintic.equilibrium(5).expect("a root").value - 1.0).abs() < 1e-14);
+        let cubic = quintic.equilibrium(3).expect("a root").value;
         assert!((cubic - (2.0_f64 / 3.0).sqrt()).abs() < 1e-14);
         let none = equation(&[1.0, 1.0, 1.0]).equilibrium(5).expect_err("none");
         assert!(none.contains("no equilibrium"), "{none}");
@@ -239,10 +249,10 @@ mod tests {
     /// a0 + a2 E with a0 = 4 ± 0.4 and a2 = −1 ± 0.1: E between 3.6/1.1 and 4.4/0.9.
     #[test]
     fn an_amplitude_has_the_error_of_its_coefficients() {
-        let found = with_errors(&[4.0, -1.0], &[0.4, 0.1]).equilibrium(3);
-        let found = found.expect("a root");
-        assert!((found.value - 2.0).abs() < 1e-14);
-        assert!((found.error - ((4.4_f64 / 0.9).sqrt() - 2.0)).abs() < 1e-12);
+        let amplitude = with_errors(&[4.0, -1.0], &[0.4, 0.1]).equilibrium(3);
+        let amplitude = amplitude.expect("a root");
+        assert!((amplitude.value - 2.0).abs() < 1e-14);
+        assert!((amplitude.error - ((4.4_f64 / 0.9).sqrt() - 2.0)).abs() < 1e-12);
     }
 
     /// What stands on a divisor or a sign within its error is no result.

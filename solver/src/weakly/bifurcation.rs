@@ -16,17 +16,17 @@ pub enum Side {
     Degenerate,
 }
 
-/// Side and kind.
+/// The side on which the bifurcating solution lies, and whether it oscillates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bifurcation {
     /// Where the bifurcating solution lies.
     pub side: Side,
-    /// A pair of complex eigenvalues, rather than one real one.
+    /// Whether a pair of complex eigenvalues crosses the axis (Hopf), rather than a real one (pitchfork).
     pub oscillatory: bool,
 }
 
 impl Bifurcation {
-    /// The kind by c0 and c2 with their absolute errors.
+    /// The bifurcation with these c0 and c2, each with its absolute error.
     pub fn new((c0, error0): (C64, f64), (c2, error2): (C64, f64)) -> Self {
         let side = if c2.re.abs() <= error2 {
             Side::Degenerate
@@ -58,7 +58,8 @@ impl fmt::Display for Bifurcation {
     }
 }
 
-/// A_e² = −a0/a2, P (4.1), where both are known not to vanish and their signs allow it.
+/// A_e = √(−a0/a2), P (4.1), from c0 and c2 with their absolute errors. `None` where a0 or a2 is zero within its error, or
+/// both have one sign.
 pub fn equilibrium((c0, error0): (C64, f64), (c2, error2): (C64, f64)) -> Option<f64> {
     let decided = c0.re.abs() > error0 && c2.re.abs() > error2;
     let square = -c0.re / c2.re;

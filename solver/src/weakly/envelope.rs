@@ -11,19 +11,18 @@ use crate::spectrum::EigenPair;
 /// How c0 depends on the wavenumber.
 #[derive(Clone, Copy, Debug)]
 pub struct Envelope {
-    /// dc0/dk
+    /// dc0/dk, in units of c0/k.
     pub slope: C64,
-    /// d²c0/dk²
+    /// d²c0/dk², in units of c0/k².
     pub curvature: C64,
 }
 
 impl Envelope {
-    /// dc0/dk = ⟨Y, (L' − c M') X⟩ / ⟨Y, M X⟩, and one bordered solve for
-    /// d²c0/dk² = ⟨Y, (L'' − 2 c' M' − c M'') X + 2 (L' − c' M − c M') X'⟩ / ⟨Y, M X⟩ with
-    /// (c M − L) X' = (L' − c' M − c M') X: exact, for k enters through (ik)^a |k|^b alone.
+    /// Both derivatives, exact but for rounding, since k enters L and M0 through factors (ik)^a |k|^b alone. Costs one
+    /// factorisation.
     ///
     /// # Errors
-    /// An eigenvalue that is not simple.
+    /// The eigenvalue is not simple.
     pub fn of(problem: &Problem, pair: &EigenPair) -> Result<Self> {
         let (k, c) = (pair.k, pair.c);
         let (x, y) = (&pair.right, &pair.left);
@@ -33,9 +32,13 @@ impl Envelope {
         let (operator, mass) = (Combination::at_eigenvalue(c), Combination::MASS);
         let plain = problem.direct.mass::<C64>(k);
         let mass_x = plain.apply(x);
-        let below = dot(y, &mass_x);
+        let y_mass_x = dot(y, &mass_x);
+
+        // c' = ⟨Y, (L' − c M') X⟩ / ⟨Y, M X⟩
         let first = derivative(operator, 1, x);
-        let slope = dot(y, &first) / below;
+        let slope = dot(y, &first) / y_mass_x;
+
+        // (c M − L) X' = (L' − c' M − c M') X with ⟨Y, M X'⟩ = 0
         let difference = |first: &[C64], mass: &[C64]| -> Vec<C64> {
             let pairs = first.iter().zip(mass);
             pairs.map(|(l, m)| l - slope * m).collect()
@@ -48,24 +51,26 @@ impl Envelope {
             .solve_regular(&right)
             .ok_or_else(|| Error::computation("d²c0/dk² cannot be formed: c0 is not simple"))?;
         moved.truncate(x.len());
+
+        // c'' = ⟨Y, (L'' − 2 c' M' − c M'') X + 2 (L' − c' M − c M') X'⟩ / ⟨Y, M X⟩
         let second = derivative(operator, 2, x);
         let mixed = derivative(mass, 1, x);
         let along = difference(&derivative(operator, 1, &moved), &plain.apply(&moved));
         let above = dot(y, &second) - 2.0 * slope * dot(y, &mixed) + 2.0 * dot(y, &along);
         Ok(Envelope {
             slope,
-            curvature: above / below,
+            curvature: above / y_mass_x,
         })
     }
 
-    /// −Im dc0/dk
+    /// Group velocity −Im dc0/dk, towards +x where positive.
     pub fn group_velocity(&self) -> f64 {
         0.0 - self.slope.im
     }
 }
 
 /// The Benjamin–Feir–Newell number 1 + (Im c0''/Re c0'')(Im c2/Re c2) of c0'' = `curvature`: a uniform wave is stable
-/// where it is positive. The reason where a divisor is zero within its error.
+/// where it is positive. `Err` gives the reason where Re c0'' or Re c2 is zero within its error.
 pub fn benjamin_feir(curvature: Measured<C64>, c2: Measured<C64>) -> Decided {
     let ratio = |c: Measured<C64>, name: &str| {
         let zero = || format!("the real part of {name} is zero within its error");

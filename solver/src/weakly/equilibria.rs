@@ -8,35 +8,39 @@ use super::system::{AmplitudeSystem, power};
 use crate::model::C64;
 use nalgebra::{DMatrix, DVector};
 
-/// Starts in all, at most.
+/// Most starts of Newton's method for one set of modes present: a bound on the work.
 const MOST_STARTS: usize = 3000;
-/// Phases of each amplitude that are tried.
+/// Number of phases that are tried for each amplitude but the first, whose phase is free.
 const PHASES: usize = 8;
-/// Two solutions that differ by less, relative, are one.
+/// Two solutions whose amplitudes differ by less than this part of the largest are one. Newton's method leaves 10⁻¹¹ of
+/// the terms of the equations.
 const SAME: f64 = 1e-6;
-/// What Newton's method brings below this part of the least start is on its way to zero.
+/// A state whose amplitudes fall below this part of the smallest start is on its way to zero, and is given up.
 const VANISHING: f64 = 1e-3;
+/// Entries of matrices of whole numbers below this are zero, and so are their singular values in the rank.
+const WHOLE: f64 = 1e-9;
 
-/// A state that stands, drifts or oscillates with one frequency a mode.
+/// A state whose amplitudes are constant or turn at a constant frequency each.
 #[derive(Clone, Debug)]
 pub struct Equilibrium {
     /// The amplitudes, turned so that as many as possible are real and positive.
     pub z: Vec<C64>,
-    /// What dz_j/dt is, over i z_j; zero where nothing moves.
+    /// ω_j = (dz_j/dt)/(i z_j) by mode, in units of c0; zero where nothing moves.
     pub frequencies: Vec<f64>,
-    /// Those of the linearised amplitude equations, phases that symmetries leave free set aside; nothing where the
-    /// linearisation changes with time.
+    /// Eigenvalues of the linearised amplitude equations in the frame that moves with the state, by decreasing real part.
+    /// Zeros of the phases that symmetries leave free are left out. `None` where no frame makes the linearisation constant.
     pub eigenvalues: Option<Vec<C64>>,
 }
 
 impl Equilibrium {
-    /// Whether every perturbation decays.
+    /// Whether every perturbation decays; `None` without eigenvalues.
     pub fn stable(&self) -> Option<bool> {
         let values = self.eigenvalues.as_ref()?;
         Some(values.iter().all(|c| c.re < 0.0))
     }
 
-    /// The speed of a pattern that travels as a whole: −frequency/q, where that is the same for all modes present.
+    /// The speed at which the pattern travels as a whole, towards +x where positive: −ω_j/q_j. `None` where that differs
+    /// between the modes present.
     pub fn drift(&self, q: &[f64]) -> Option<f64> {
         let present = (0..q.len()).filter(|&j| self.z[j] != C64::new(0.0, 0.0));
         let speeds: Vec<f64> = present.map(|j| -self.frequencies[j] / q[j]).collect();
@@ -47,17 +51,18 @@ impl Equilibrium {
     }
 }
 
-/// All equilibria but zero that Newton's method finds from a fixed set of starts, by the modes present, then by size.
+/// All equilibria but zero that Newton's method reaches from a fixed set of starts, ordered by the modes present, then by
+/// Σ|z|².
 pub fn equilibria(system: &AmplitudeSystem) -> Vec<Equilibrium> {
     let n = system.modes();
-    let mut found: Vec<Equilibrium> = Vec::new();
+    let mut equilibria: Vec<Equilibrium> = Vec::new();
     for mask in 1_u32..1 << n {
         let present: Vec<usize> = (0..n).filter(|j| mask >> j & 1 == 1).collect();
         if !is_invariant(system, &present) {
             continue;
         }
         let symmetries = symmetries(system, &present);
-        let mut own: Vec<Equilibrium> = Vec::new();
+        let mut of_these_modes: Vec<Equilibrium> = Vec::new();
         let starts = starts(system, &present);
         let sizes = starts
             .iter()
@@ -69,11 +74,11 @@ pub fn equilibria(system: &AmplitudeSystem) -> Vec<Equilibrium> {
             let Some((z, frequencies)) = newton(system, &present, &symmetries, start, least) else {
                 continue;
             };
-            let other = |e: &Equilibrium| same(system, &e.z, &z);
-            if !own.iter().any(other) {
+            let is_same = |e: &Equilibrium| same(system, &e.z, &z);
+            if !of_these_modes.iter().any(is_same) {
                 let z = turned(z, &present, &symmetries);
                 let eigenvalues = eigenvalues(system, &z, &frequencies);
-                own.push(Equilibrium {
+                of_these_modes.push(Equilibrium {
                     z,
                     frequencies,
                     eigenvalues,
@@ -81,15 +86,15 @@ pub fn equilibria(system: &AmplitudeSystem) -> Vec<Equilibrium> {
             }
         }
         let size = |e: &Equilibrium| e.z.iter().map(|z| z.norm_sqr()).sum::<f64>();
-        own.sort_by(|a, b| size(a).total_cmp(&size(b)));
-        found.extend(own);
+        of_these_modes.sort_by(|a, b| size(a).total_cmp(&size(b)));
+        equilibria.extend(of_these_modes);
     }
-    found
+    equilibria
 }
 
 impl Equilibrium {
-    /// The equilibrium of a system that differs little, next to this one; nothing where Newton's method finds none of
-    /// half to twice the size there.
+    /// The equilibrium next to this one of a system that differs little. `None` where Newton's method from here reaches
+    /// none of half to twice the size.
     pub fn continued(&self, system: &AmplitudeSystem) -> Option<Equilibrium> {
         let present: Vec<usize> = (0..self.z.len())
             .filter(|&j| self.z[j] != C64::new(0.0, 0.0))
@@ -109,7 +114,7 @@ impl Equilibrium {
     }
 }
 
-/// Whether the amplitudes of the other modes stay zero.
+/// Whether amplitudes of absent modes stay zero: their equations hold no term in the amplitudes present alone.
 fn is_invariant(system: &AmplitudeSystem, present: &[usize]) -> bool {
     let absent = (0..system.modes()).filter(|j| !present.contains(j));
     let mut terms = absent.flat_map(|j| &system.equations[j]);
@@ -120,7 +125,9 @@ fn is_invariant(system: &AmplitudeSystem, present: &[usize]) -> bool {
     })
 }
 
-/// A basis of the symmetries of the equations of some modes, `[symmetry][mode]`, zero for the others.
+/// A basis of the symmetries of the equations of the modes present, `[symmetry][mode]`, with zeros for absent modes.
+///
+/// A symmetry w satisfies Σ_i w_i (p_i − s_i) − w_j = 0 for every monomial (p, s) of the equation of z_j.
 fn symmetries(system: &AmplitudeSystem, present: &[usize]) -> Vec<Vec<f64>> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     for &j in present {
@@ -133,8 +140,8 @@ fn symmetries(system: &AmplitudeSystem, present: &[usize]) -> Vec<Vec<f64>> {
                 continue;
             }
             let differences: Vec<f64> = term.monomial.differences().collect();
-            let own = |&i: &usize| differences[i] - f64::from(u8::from(i == j));
-            rows.push(present.iter().map(own).collect());
+            let entry = |&i: &usize| differences[i] - f64::from(u8::from(i == j));
+            rows.push(present.iter().map(entry).collect());
         }
     }
     let null = null_space(rows, present.len());
@@ -148,22 +155,22 @@ fn symmetries(system: &AmplitudeSystem, present: &[usize]) -> Vec<Vec<f64>> {
     null.into_iter().map(spread).collect()
 }
 
-/// A basis of the vectors that small whole-numbered rows take to zero, by Gauss's elimination.
+/// A basis of the x with Σ_j rows[r][j] x_j = 0 for every r, by Gauss's elimination; the rows hold small whole numbers.
 fn null_space(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<Vec<f64>> {
     let mut pivots: Vec<usize> = Vec::new();
     for column in 0..n {
         let rank = pivots.len();
-        let Some(pivot) = (rank..rows.len()).find(|&r| rows[r][column].abs() > 1e-9) else {
+        let Some(pivot) = (rank..rows.len()).find(|&r| rows[r][column].abs() > WHOLE) else {
             continue;
         };
         rows.swap(rank, pivot);
         let lead = rows[rank][column];
         rows[rank].iter_mut().for_each(|x| *x /= lead);
-        let own = rows[rank].clone();
-        for (r, row) in rows.iter_mut().enumerate().filter(|(r, _)| *r != rank) {
+        let pivot_row = rows[rank].clone();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(r, _)| *r != rank) {
             let factor = row[column];
-            debug_assert!(r != rank);
-            row.iter_mut().zip(&own).for_each(|(x, o)| *x -= factor * o);
+            let entries = row.iter_mut().zip(&pivot_row);
+            entries.for_each(|(x, pivot)| *x -= factor * pivot);
         }
         pivots.push(column);
     }
@@ -179,30 +186,13 @@ fn null_space(mut rows: Vec<Vec<f64>>, n: usize) -> Vec<Vec<f64>> {
     free.map(vector).collect()
 }
 
-/// Amplitudes at which terms of the equations balance, and a few about them, at several phases.
+/// Starts for Newton's method, `[start][mode]`: every combination of some sizes of each amplitude and some phases. Sizes
+/// are in geometric progression from a tenth of the smallest at which two terms of an equation balance to three times the
+/// largest.
 fn starts(system: &AmplitudeSystem, present: &[usize]) -> Vec<Vec<C64>> {
-    let mut sizes: Vec<f64> = Vec::new();
-    for &j in present {
-        let terms = &system.equations[j];
-        for (i, a) in terms.iter().enumerate() {
-            for b in &terms[..i] {
-                let step = a.monomial.degree() as f64 - b.monomial.degree() as f64;
-                // The real parts alone may balance where frequencies are large.
-                for ratio in [b.g.norm() / a.g.norm(), (b.g.re / a.g.re).abs()] {
-                    let size = ratio.powf(1.0 / step);
-                    if size.is_finite() && size > 0.0 && step > 0.0 {
-                        sizes.push(size);
-                    }
-                }
-            }
-        }
-    }
-    let (least, most) = sizes
-        .iter()
-        .fold((f64::INFINITY, 0.0_f64), |(a, b), s| (a.min(*s), b.max(*s)));
-    if !least.is_finite() {
+    let Some([least, most]) = balances(system, present) else {
         return Vec::new();
-    }
+    };
     let count = present.len() as u32;
     let phases = if count == 1 { 1 } else { PHASES };
     let mut levels = 24_usize;
@@ -229,7 +219,33 @@ fn starts(system: &AmplitudeSystem, present: &[usize]) -> Vec<Vec<C64>> {
     (0..total).map(start).collect()
 }
 
-/// The relative difference below which two solutions are one. Near onset the rounding of frequencies is a part of the growth rates.
+/// The smallest and the largest |z| at which two terms of an equation balance: |g_a| |z|^m = |g_b| |z|^n. `None` where no
+/// two do.
+fn balances(system: &AmplitudeSystem, present: &[usize]) -> Option<[f64; 2]> {
+    let mut sizes: Vec<f64> = Vec::new();
+    for &j in present {
+        let terms = &system.equations[j];
+        for (i, a) in terms.iter().enumerate() {
+            for b in &terms[..i] {
+                let step = a.monomial.degree() as f64 - b.monomial.degree() as f64;
+                // The real parts alone may balance where frequencies are large.
+                for ratio in [b.g.norm() / a.g.norm(), (b.g.re / a.g.re).abs()] {
+                    let size = ratio.powf(1.0 / step);
+                    if size.is_finite() && size > 0.0 && step > 0.0 {
+                        sizes.push(size);
+                    }
+                }
+            }
+        }
+    }
+    let (least, most) = sizes
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(a, b), s| (a.min(*s), b.max(*s)));
+    least.is_finite().then_some([least, most])
+}
+
+/// The relative difference below which two solutions are one: [`SAME`], or more near onset, where rounding of c_j is no
+/// small part of the growth rate a_j. There it is 256 ε |c_j| / a_j, with 0.3 as the most.
 fn resolution(system: &AmplitudeSystem) -> f64 {
     let linear = system
         .equations
@@ -247,7 +263,7 @@ fn resolution(system: &AmplitudeSystem) -> f64 {
     })
 }
 
-/// Whether two states differ by a symmetry: the moduli and all terms of the equations, over their amplitudes, agree.
+/// Whether two states differ by a symmetry alone: |z_j|, and each term of dz_j/dt times z̄_j, are the same in both.
 fn same(system: &AmplitudeSystem, a: &[C64], b: &[C64]) -> bool {
     let tolerance = resolution(system);
     let size = a.iter().map(|z| z.norm()).fold(0.0, f64::max);
@@ -267,7 +283,7 @@ fn same(system: &AmplitudeSystem, a: &[C64], b: &[C64]) -> bool {
     })
 }
 
-/// The same state with as many amplitudes as possible real and positive, the first ones before the others.
+/// A state turned by the symmetries so that as many amplitudes as possible are real and positive, in the order of modes.
 fn turned(z: Vec<C64>, present: &[usize], symmetries: &[Vec<f64>]) -> Vec<C64> {
     let mut rows: Vec<Vec<f64>> = Vec::new();
     let mut phases: Vec<f64> = Vec::new();
@@ -276,7 +292,7 @@ fn turned(z: Vec<C64>, present: &[usize], symmetries: &[Vec<f64>]) -> Vec<C64> {
         let mut extended = rows.clone();
         extended.push(row);
         let matrix = DMatrix::from_fn(extended.len(), symmetries.len(), |i, k| extended[i][k]);
-        if symmetries.is_empty() || matrix.rank(1e-9) < extended.len() {
+        if symmetries.is_empty() || matrix.rank(WHOLE) < extended.len() {
             continue;
         }
         rows = extended;
@@ -288,7 +304,7 @@ fn turned(z: Vec<C64>, present: &[usize], symmetries: &[Vec<f64>]) -> Vec<C64> {
     let matrix = DMatrix::from_fn(rows.len(), symmetries.len(), |i, k| rows[i][k]);
     let Ok(theta) = matrix
         .svd(true, true)
-        .solve(&DVector::from_vec(phases), 1e-9)
+        .solve(&DVector::from_vec(phases), WHOLE)
     else {
         return z;
     };
@@ -300,15 +316,21 @@ fn turned(z: Vec<C64>, present: &[usize], symmetries: &[Vec<f64>]) -> Vec<C64> {
             .sum();
         let turned = z * C64::cis(angle);
         // Rounding of a phase that is zero or π.
-        match turned.im.abs() <= 1e-9 * turned.norm() {
-            true => C64::new(turned.re, 0.0),
-            false => turned,
+        if turned.im.abs() <= 1e-9 * turned.norm() {
+            C64::new(turned.re, 0.0)
+        } else {
+            turned
         }
     };
     z.into_iter().enumerate().map(turn).collect()
 }
 
-/// The eigenvalues of the whole system about a state, in the frame that moves with it.
+/// Eigenvalues of the equations of all modes, linearised about a state in the frame that moves with it: with z_j =
+/// (ζ_j + δ_j) e^{iω_j t} and ω_j = Σ_a ν_a w_aj,
+///
+/// dδ_i/dt = Σ_j (∂ż_i/∂z_j − i ω_i δ_ij) δ_j + ∂ż_i/∂z̄_j δ̄_j.
+///
+/// Zeros of the phases that the symmetries leave free are left out. `None` where no symmetry moves the modes as they move.
 fn eigenvalues(system: &AmplitudeSystem, z: &[C64], frequencies: &[f64]) -> Option<Vec<C64>> {
     let n = z.len();
     let all: Vec<usize> = (0..n).collect();
@@ -318,16 +340,16 @@ fn eigenvalues(system: &AmplitudeSystem, z: &[C64], frequencies: &[f64]) -> Opti
         .copied()
         .filter(|&j| z[j] != C64::new(0.0, 0.0))
         .collect();
-    // The frame: symmetries of the whole system that move the modes present as they move.
+    // The frame: Σ_a ν_a w_aj = ω_j for the modes present.
     let d = symmetries.len();
     let matrix = DMatrix::from_fn(present.len(), d, |i, a| symmetries[a][present[i]]);
     let right = DVector::from_fn(present.len(), |i, _| frequencies[present[i]]);
     let (nu, neutral) = if d == 0 {
         (DVector::zeros(0), 0)
     } else {
-        let neutral = matrix.rank(1e-9);
+        let neutral = matrix.rank(WHOLE);
         (
-            matrix.clone().svd(true, true).solve(&right, 1e-9).ok()?,
+            matrix.clone().svd(true, true).solve(&right, WHOLE).ok()?,
             neutral,
         )
     };
@@ -340,8 +362,8 @@ fn eigenvalues(system: &AmplitudeSystem, z: &[C64], frequencies: &[f64]) -> Opti
     for i in 0..n {
         let omega: f64 = (0..d).map(|a| nu[a] * symmetries[a][i]).sum();
         for j in 0..n {
-            let own = slopes[i][j] - C64::new(0.0, if i == j { omega } else { 0.0 });
-            fill(&mut jacobian, (i, j), own, conjugate[i][j]);
+            let slope = slopes[i][j] - C64::new(0.0, if i == j { omega } else { 0.0 });
+            fill(&mut jacobian, (i, j), slope, conjugate[i][j]);
         }
     }
     if !jacobian.iter().all(|v| v.is_finite()) {
@@ -349,7 +371,8 @@ fn eigenvalues(system: &AmplitudeSystem, z: &[C64], frequencies: &[f64]) -> Opti
     }
     let mut values: Vec<C64> = jacobian.complex_eigenvalues().iter().copied().collect();
     values.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
-    let mut rest = values.split_off(neutral);
-    rest.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
-    Some(rest)
+    // The smallest are the zeros of the free phases.
+    let mut eigenvalues = values.split_off(neutral);
+    eigenvalues.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
+    Some(eigenvalues)
 }

@@ -1,16 +1,19 @@
 //! The amplitude expansion for any modes, to any order.
 //!
-//! X' = Σ_j z_j φ_j e^{i q_j x} + c.c. + Σ_α X_α z^p z̄^s e^{i q_α x},  α = (p, s),  q_α = Σ_j (p_j − s_j) q_j,
-//! dz_j/dt = c_j z_j + Σ_{α ∈ R_j} g_jα z^p z̄^s,
-//! [σ_α M0 − L_{q_α}] X_α = G_α − Σ_{j: α ∈ R_j} g_jα M0 φ_j,  σ_α = Σ_j (p_j c_j + s_j c̄_j),  ⟨ψ_j, M0 X_α⟩ = 0.
+//! X' = Σ_j z_j φ_j e^{i q_j x} + c.c. + Σ_{|α| ≥ 2} X_α z^p z̄^s e^{i q_α x},  α = (p, s),  q_α = Σ_j (p_j − s_j) q_j
+//! dz_j/dt = c_j z_j + Σ_{α ∈ R_j} g_jα z^p z̄^s
 //!
-//! One mode to third order is P (3.13)–(3.22). Resonant, in R_j, are the monomials with the wavenumber of mode j
-//! and, where something oscillates, its frequency.
+//! [σ_α M0 − L_{q_α}] X_α = G_α − Σ_{j: α ∈ R_j} g_jα M0 φ_j,  σ_α = Σ_j (p_j c_j + s_j c̄_j),  ⟨ψ_j, M0 X_α⟩ = 0
+//!
+//! R_j, the resonant monomials of mode j, have its wavenumber and, where something oscillates, about its frequency. One
+//! mode to third order is P (3.13)–(3.22).
+//!
+//! Of α and its conjugate (s, p) one is stored, since X_(s,p) is the conjugate of X_(p,s).
 
 use super::cubic::fundamental;
 use super::forcing::{Forcing, Preparation};
 use super::mode::Mode;
-use super::response::{Multiplier, Question, Response, RightSide, arithmetic};
+use super::response::{ForcedProblem, Multiplier, Response, RightSide, arithmetic};
 use super::scramble::turned;
 use super::system::{AmplitudeSystem, Term};
 use crate::error::{Error, Result};
@@ -23,45 +26,47 @@ use crate::spectrum::EigenPair;
 use crate::wavevector::WaveVector;
 use std::sync::Arc;
 
-/// Wavenumbers that differ by a smaller part of the largest are one.
-const SAME: f64 = 1e-9;
+/// A frequency below this part of the size of its eigenvalue, or of the scale of the spectrum, is zero. It lies above the
+/// rounding of an eigenvalue and far below a frequency that moves anything.
+const STILL: f64 = 1e-9;
 
-/// A mode with an amplitude of its own.
+/// A mode with an amplitude z_j.
 #[derive(Clone)]
 pub struct CriticalMode {
-    /// Eigenvalue and vectors.
+    /// q_j and c_j with both vectors.
     pub pair: EigenPair,
-    /// φ, normalised.
+    /// φ_j, normalised as the spec says.
     pub profile: Mode,
-    /// M0 φ, in the solver's basis.
+    /// M0 φ_j, in the solver's basis.
     column: Turned,
-    /// M0ᴴ ψ
+    /// M0ᴴ ψ_j, in the solver's basis.
     row: Turned,
 }
 
-/// The modes and coefficients found so far.
+/// The expansion through some order, which [`Expansion::advance`] raises by one.
 pub struct Expansion {
-    /// The collocated problem.
+    /// The collocated problem around the base state.
     pub problem: Arc<Problem>,
     /// The modes with amplitudes.
     pub modes: Vec<CriticalMode>,
-    /// Their equations, as far as they are known.
+    /// Their amplitude equations through the order reached.
     pub system: AmplitudeSystem,
-    /// Multipliers of the closures at q = 0.
+    /// Multipliers of the closures in all problems at q = 0.
     pub multipliers: Vec<Multiplier>,
     arithmetic: Arithmetic,
     monomials: Monomials,
-    /// X_α by degree, from 1 on, of the stored monomials.
+    /// X_α of the stored monomials, `[degree − 1][index]`.
     profiles: Vec<Vec<Mode>>,
     forcing: Forcing,
+    /// The solved problem of each X_α from degree 2 on.
     responses: Vec<(Monomial, Response)>,
 }
 
 impl Expansion {
-    /// The modes alone: order 1.
+    /// The expansion at order 1: the modes alone.
     ///
     /// # Errors
-    /// A mode that the spec's normalisation does not fit, two modes that are one.
+    /// A mode cannot be normalised, or two modes are the same.
     pub fn new(problem: &Arc<Problem>, pairs: Vec<EigenPair>) -> Result<Self> {
         let rates: Vec<C64> = pairs.iter().map(|pair| pair.c).collect();
         distinct(&pairs)?;
@@ -102,10 +107,10 @@ impl Expansion {
         Ok(expansion)
     }
 
-    /// All modes and coefficients to an order.
+    /// The expansion through an order.
     ///
     /// # Errors
-    /// As [`Expansion::new`], and a singular problem: resonance.
+    /// As [`Expansion::new`] and [`Expansion::advance`].
     pub fn to(problem: &Arc<Problem>, pairs: Vec<EigenPair>, order: usize) -> Result<Self> {
         let mut expansion = Expansion::new(problem, pairs)?;
         while expansion.order() < order {
@@ -114,13 +119,13 @@ impl Expansion {
         Ok(expansion)
     }
 
-    /// The order of the modes found.
+    /// The order reached.
     pub fn order(&self) -> usize {
         self.profiles.len()
     }
 
-    /// All monomials, conjugates too, whose modes are known, with these, from degree 1 on.
-    pub fn known(&self) -> Vec<(Monomial, Mode)> {
+    /// Every X_α through the order reached, from degree 1 on, with its monomial; conjugates included.
+    pub fn coefficients(&self) -> Vec<(Monomial, Mode)> {
         let mut all = Vec::new();
         for (degree, profiles) in (1..).zip(&self.profiles) {
             for (monomial, mode) in self.monomials.of(degree).iter().zip(profiles) {
@@ -133,20 +138,21 @@ impl Expansion {
         all
     }
 
-    /// The mode of z^p z̄^s.
+    /// X_α of one monomial; `None` beyond the order reached.
     pub fn profile(&self, monomial: &Monomial) -> Option<Mode> {
         let place = self.monomials.place(monomial)?;
         let mode = self
             .profiles
             .get(place.degree.checked_sub(1)?)?
             .get(place.index)?;
-        Some(match place.conjugate {
-            true => mode.conjugate(),
-            false => mode.clone(),
+        Some(if place.conjugate {
+            mode.conjugate()
+        } else {
+            mode.clone()
         })
     }
 
-    /// q_α, with the wavenumbers of modes to the last digit.
+    /// q_α = Σ_j (p_j − s_j) q_j. Where that is ±q_j or zero but for rounding, it is exactly so.
     pub fn wavevector(&self, alpha: &Monomial) -> WaveVector {
         let modes = || self.modes.iter().map(|mode| mode.pair.k);
         let q: WaveVector = alpha.differences().zip(modes()).map(|(d, q)| d * q).sum();
@@ -156,7 +162,7 @@ impl Expansion {
         exact.unwrap_or(q)
     }
 
-    /// σ_α
+    /// σ_α = Σ_j (p_j c_j + s_j c̄_j)
     pub fn shift(&self, alpha: &Monomial) -> C64 {
         let exponents = alpha.z.iter().zip(&alpha.conj);
         let terms = exponents.zip(&self.modes).map(|((&p, &s), mode)| {
@@ -166,13 +172,13 @@ impl Expansion {
         terms.sum()
     }
 
-    /// The modes whose amplitude equations a monomial enters.
+    /// The modes j with α ∈ R_j: q_α = q_j, and |Im σ_α − Im c_j| at most half the smallest frequency of the modes.
     fn resonant(&self, alpha: &Monomial) -> Vec<usize> {
         let (q, shift) = (self.wavevector(alpha), self.shift(alpha));
         let frequency = |mode: &CriticalMode| {
             let size = mode.pair.c.norm().max(mode.pair.scale);
-            let own = mode.pair.c.im;
-            (own.abs() > SAME * size).then_some(own.abs())
+            let omega = mode.pair.c.im.abs();
+            (omega > STILL * size).then_some(omega)
         };
         let least = self.modes.iter().filter_map(frequency);
         let reach = 0.5 * least.fold(f64::INFINITY, f64::min);
@@ -182,19 +188,20 @@ impl Expansion {
         modes.filter(|(_, m)| meets(m)).map(|(j, _)| j).collect()
     }
 
-    /// The next order: every X_α, and the coefficients of the amplitude equations.
+    /// Raises the order by one: solves for every X_α of the next degree and for the coefficients g_jα.
     ///
     /// # Errors
-    /// A singular problem: resonance.
+    /// A problem is singular: X_α resonates with a mode that has no amplitude.
     pub fn advance(&mut self) -> Result<()> {
         let (degree, posed) = self.begin();
         let all: Vec<usize> = (0..posed.len()).collect();
         let mut profiles = Vec::with_capacity(posed.len());
         for (posed, right) in self.forcings(degree, &posed, &all) {
             let mode = self.solve(&posed, right)?;
-            profiles.push(match posed.mirrored {
-                true => mode.conjugate(),
-                false => mode,
+            profiles.push(if posed.mirrored {
+                mode.conjugate()
+            } else {
+                mode
             });
         }
         self.profiles.push(profiles);
@@ -202,8 +209,7 @@ impl Expansion {
         Ok(())
     }
 
-    /// The coefficients of the next order without its modes, by projection: ⟨ψ_j, G_α⟩ / ⟨ψ_j, M0 φ_j⟩.
-    /// The expansion ends here.
+    /// The amplitude equations through the next order, whose X_α are not solved for. This ends the expansion.
     pub fn last_coefficients(mut self) -> AmplitudeSystem {
         let (degree, posed) = self.begin();
         let resonant: Vec<usize> = (0..posed.len())
@@ -211,6 +217,7 @@ impl Expansion {
             .collect();
         for (posed, right) in self.forcings(degree, &posed, &resonant) {
             for j in posed.resonant {
+                // g_jα = ⟨ψ_j, G_α⟩ / ⟨ψ_j, M0 φ_j⟩
                 let mode = &self.modes[j];
                 let left = &mode.pair.left;
                 let g = dot(left, &right.equations) / dot(left, &mode.column);
@@ -229,24 +236,31 @@ impl Expansion {
         (degree, posed.map(|stored| self.pose(stored)).collect())
     }
 
-    /// The problem of a monomial, or that of its conjugate: the one that amplitude equations need, or the one of
-    /// positive wavenumber.
+    /// The problem of a stored monomial or that of its conjugate: the one that is resonant, or else the one of positive
+    /// wavenumber.
     fn pose(&self, stored: &Monomial) -> Posed {
-        let (own, other) = (stored.clone(), stored.conjugate());
-        let (resonant, conjugate) = (self.resonant(&own), self.resonant(&other));
-        let mirrored = match (resonant.is_empty(), conjugate.is_empty()) {
-            (false, _) => false,
-            (true, false) => true,
-            (true, true) => self.wavevector(&own).is_reversed(),
+        let conjugate = stored.conjugate();
+        let [of_stored, of_conjugate] = [stored, &conjugate].map(|alpha| self.resonant(alpha));
+        let mirrored = if !of_stored.is_empty() {
+            false
+        } else if !of_conjugate.is_empty() {
+            true
+        } else {
+            self.wavevector(stored).is_reversed()
+        };
+        let (alpha, resonant) = if mirrored {
+            (conjugate, of_conjugate)
+        } else {
+            (stored.clone(), of_stored)
         };
         Posed {
-            alpha: if mirrored { other } else { own },
-            resonant: if mirrored { conjugate } else { resonant },
+            alpha,
+            resonant,
             mirrored,
         }
     }
 
-    /// G of the wanted problems of a degree, in the solver's basis, the known part of the rates included.
+    /// G_α of the wanted problems of a degree, in the solver's basis.
     fn forcings(
         &mut self,
         degree: usize,
@@ -254,8 +268,9 @@ impl Expansion {
         wanted: &[usize],
     ) -> Vec<(Posed, RightSide)> {
         self.forcing.begin(&self.monomials, degree, wanted);
-        let known = |(index, posed): (usize, &Posed)| {
-            let rate = self.known_rate(&posed.alpha)?;
+        // A mode whose values, X_α, are still unknown, and whose rate holds what lower orders contribute.
+        let moving = |(index, posed): (usize, &Posed)| {
+            let rate = self.rate_of_lower_orders(&posed.alpha)?;
             let still = Profile::zero(rate.len());
             let mode = Mode::new(self.wavevector(&posed.alpha), still, rate);
             let mode = if posed.mirrored {
@@ -265,20 +280,22 @@ impl Expansion {
             };
             wanted.contains(&index).then_some(mode)
         };
-        let known: Vec<Option<Mode>> = posed.iter().enumerate().map(known).collect();
-        let found = self
+        let moving: Vec<Option<Mode>> = posed.iter().enumerate().map(moving).collect();
+        let forcings = self
             .forcing
-            .outputs(&self.problem, &self.monomials, degree, &known);
+            .outputs(&self.problem, &self.monomials, degree, &moving);
         let right = |&index: &usize| {
-            let right = match posed[index].mirrored {
-                true => found[index].conjugate_right(),
-                false => found[index].right(),
+            let right = if posed[index].mirrored {
+                forcings[index].conjugate_right()
+            } else {
+                forcings[index].right()
             };
             (posed[index].clone(), right)
         };
         wanted.iter().map(right).collect()
     }
 
+    /// Solves one problem for X_α and its g_jα, which enter the amplitude equations.
     fn solve(&mut self, posed: &Posed, forcing: RightSide) -> Result<Mode> {
         forcing.check_range()?;
         let alpha = &posed.alpha;
@@ -287,9 +304,10 @@ impl Expansion {
             (mode.column.clone(), mode.row.clone())
         });
         let borders: Vec<_> = borders.collect();
-        let question = Question {
+        // [σ_α M0 − L_{q_α}] X_α + Σ_j g_jα M0 φ_j = G_α,  ⟨ψ_j, M0 X_α⟩ = 0
+        let forced = ForcedProblem {
             q: self.wavevector(alpha),
-            shift: self.shift(alpha),
+            sigma: self.shift(alpha),
             forcing,
             arithmetic: self.arithmetic,
             order: alpha.degree(),
@@ -297,11 +315,12 @@ impl Expansion {
             borders: &borders,
             uncancelled: &|| self.uncancelled(alpha),
         };
-        let response = question
-            .answer(&self.problem)
+        let response = forced
+            .solve(&self.problem)
             .ok_or_else(|| self.singular(alpha))?;
+        // What stands beside z^p z̄^s in ∂t X: σ_α X_α + Σ_j g_jα φ_j, and what lower orders contribute.
         let mut mode = response.mode.clone();
-        if let Some(rate) = self.known_rate(alpha) {
+        if let Some(rate) = self.rate_of_lower_orders(alpha) {
             mode.rate.add(C64::new(1.0, 0.0), &rate);
         }
         for (&j, &g) in posed.resonant.iter().zip(&response.coefficients) {
@@ -315,8 +334,8 @@ impl Expansion {
         Ok(mode)
     }
 
-    /// G of a monomial with weights on all jets that let nothing cancel, in the solver's basis; the known part of the
-    /// rates is left out.
+    /// G_α with a weight on every jet, so that its terms do not cancel, in the solver's basis. The contribution of lower
+    /// orders to the rates is left out.
     fn uncancelled(&self, alpha: &Monomial) -> Option<Turned> {
         let k = self
             .modes
@@ -337,27 +356,25 @@ impl Expansion {
         let degree = alpha.degree();
         forcing.begin(&monomials, degree, &[index]);
         let still = vec![None; monomials.of(degree).len()];
-        let found = forcing.outputs(&self.problem, &monomials, degree, &still);
-        Some(found.get(index)?.right().equations)
+        let forcings = forcing.outputs(&self.problem, &monomials, degree, &still);
+        Some(forcings.get(index)?.right().equations)
     }
 
-    /// Σ X_γ d/dt of lower monomials γ that gives z^p z̄^s through the nonlinear terms of the amplitude equations.
-    fn known_rate(&self, alpha: &Monomial) -> Option<Profile> {
+    /// The part of ∂t X beside z^p z̄^s that lower orders contribute: Σ_γ X_γ times the coefficient of α in dγ/dt, over
+    /// monomials γ of degree 2 and more. `None` where it is zero.
+    fn rate_of_lower_orders(&self, alpha: &Monomial) -> Option<Profile> {
         let mut rate: Option<Profile> = None;
         for degree in 2..alpha.degree() {
-            let found = self
-                .monomials
-                .of(degree)
-                .iter()
-                .zip(&self.profiles[degree - 1]);
-            for (stored, mode) in found {
+            let monomials = self.monomials.of(degree).iter();
+            for (stored, mode) in monomials.zip(&self.profiles[degree - 1]) {
                 for gamma in [stored.clone(), stored.conjugate()] {
                     let factor = self.rate_factor(alpha, &gamma);
                     if factor != C64::new(0.0, 0.0) {
                         let rate = rate.get_or_insert_with(|| Profile::zero(mode.values.len()));
-                        match gamma == *stored {
-                            true => rate.add(factor, &mode.values),
-                            false => rate.add(factor, &mode.values.conjugate()),
+                        if gamma == *stored {
+                            rate.add(factor, &mode.values);
+                        } else {
+                            rate.add(factor, &mode.values.conjugate());
                         }
                     }
                     if stored.is_real() {
@@ -369,8 +386,9 @@ impl Expansion {
         rate
     }
 
-    /// The coefficient of α in the part of dγ/dt that is nonlinear in the amplitudes:
-    /// Σ_j p_j γ/z_j Σ g_jβ β and its like for z̄_j.
+    /// The coefficient of α in the part of dγ/dt that is nonlinear in the amplitudes. With γ = z^p z̄^s,
+    ///
+    /// dγ/dt = Σ_j p_j (γ/z_j) dz_j/dt + Σ_j s_j (γ/z̄_j) dz̄_j/dt.
     fn rate_factor(&self, alpha: &Monomial, gamma: &Monomial) -> C64 {
         let n = self.modes.len();
         let mut factor = C64::new(0.0, 0.0);
@@ -380,20 +398,21 @@ impl Expansion {
                 let beta = beta.filter(|beta| beta.degree() > 1)?;
                 self.system.coefficient(j, &beta)
             };
-            let own = gamma.over(&z).and_then(|rest| alpha.over(&rest));
-            if let Some(g) = coefficient(own) {
+            // The β of dz_j/dt with (γ/z_j) β = α.
+            let beta = |z: &Monomial| gamma.over(z).and_then(|quotient| alpha.over(&quotient));
+            if let Some(g) = coefficient(beta(&z)) {
                 factor += g * f64::from(gamma.z[j]);
             }
-            let other = gamma
-                .over(&z.conjugate())
-                .and_then(|rest| alpha.over(&rest));
-            if let Some(g) = coefficient(other.map(|beta| beta.conjugate())) {
+            // dz̄_j/dt holds the conjugates of the terms of dz_j/dt.
+            let conjugate = beta(&z.conjugate()).map(|beta| beta.conjugate());
+            if let Some(g) = coefficient(conjugate) {
                 factor += g.conj() * f64::from(gamma.conj[j]);
             }
         }
         factor
     }
 
+    /// Hands the X_α of a degree to the residuals, whose coefficients of that degree are then complete.
     fn complete(&mut self, degree: usize) {
         let modes = self.profiles[degree - 1].iter().cloned().map(Some);
         let modes: Vec<Option<Mode>> = modes.collect();
@@ -401,7 +420,7 @@ impl Expansion {
             .complete(&self.problem, &self.monomials, degree, &modes);
     }
 
-    /// Every solved problem's distance from singularity.
+    /// The distance of every solved problem from singularity.
     pub fn distances(&self) -> Vec<Distance> {
         let distance = |(monomial, response): &(Monomial, Response)| Distance {
             monomial: monomial.clone(),
@@ -439,12 +458,13 @@ pub struct Distance {
     pub q: WaveVector,
     /// σ_α
     pub shift: C64,
-    /// Of σ_α from the spectrum of L at q.
+    /// Distance of σ_α from the spectrum of L at q, in units of σ_α.
     pub distance: f64,
 }
 
 impl Distance {
-    /// What is near, and the command that gives it an amplitude of its own beside those of the modes at `q`.
+    /// A message: which mode is near, and the command that gives it an amplitude beside those of the modes at the
+    /// wavenumbers `q`.
     pub fn in_words(&self, q: &[f64]) -> String {
         let (name, distance) = (self.monomial.name(), self.distance);
         if self.q.is_mean() {
@@ -453,13 +473,14 @@ impl Distance {
             );
         }
         let mut modes: Vec<String> = q.iter().map(|q| format!("--mode k={q}")).collect();
-        modes.push(match q.contains(&self.q.k()) {
-            // Not the mode that is there already.
-            true => format!(
+        modes.push(if q.contains(&self.q.k()) {
+            // A mode at this wavenumber has an amplitude already: name the other one by its eigenvalue.
+            format!(
                 "--mode k={},near={:.6}:{:.6}",
                 self.q, self.shift.re, self.shift.im
-            ),
-            false => format!("--mode k={}", self.q),
+            )
+        } else {
+            format!("--mode k={}", self.q)
         });
         format!(
             "small divisor: {name} meets a mode at k = {}, {distance:.1e} away, which wants an amplitude of its own: \
@@ -470,17 +491,19 @@ impl Distance {
     }
 }
 
-/// A problem of the expansion.
+/// The problem of one X_α.
 #[derive(Clone)]
 struct Posed {
     alpha: Monomial,
-    /// The modes whose amplitude equations it gives a coefficient to.
+    /// The modes j with α ∈ R_j.
     resonant: Vec<usize>,
-    /// Whether it is that of the conjugate of the stored monomial.
+    /// Whether α is the conjugate of the stored monomial.
     mirrored: bool,
 }
 
-/// Two modes at q and −q whose eigenvalues are conjugate are one, as are two that agree in both.
+/// Refuses two modes that are the same: equal in wavenumber and eigenvalue to 10⁻⁶, or one the conjugate of the other, at
+/// −q with the conjugate eigenvalue. The tolerance is relative to the eigenvalue or to the scale of its spectrum, and far
+/// above the error that inverse iteration leaves.
 fn distinct(pairs: &[EigenPair]) -> Result<()> {
     for (i, a) in pairs.iter().enumerate() {
         for b in &pairs[..i] {

@@ -1,7 +1,7 @@
-//! What modes of lower order force: the unexpanded residual and boundary conditions run on truncated polynomials.
+//! G_α, what modes of lower order force: the unexpanded residual and boundary conditions run on truncated polynomials.
 //!
-//! Laws, divisions, roots and state-dependent masses need no case of their own. Of each balance
-//! M ∂t X − R the coefficient of z^p z̄^s, with X_ps itself left out, is minus G_ps.
+//! In the balance M(X) ∂t X − R(X) = 0 the coefficient of z^p z̄^s is [σ_α M0 − L_q] X_α − G_α. With X_α left out of the
+//! argument it is −G_α. Laws, divisions, roots and masses that depend on the state are computed like any other operation.
 
 use super::integrals::Integrals;
 use super::mode::Mode;
@@ -14,19 +14,21 @@ use crate::series::{Arithmetic, Levels, Monomials, Program};
 use crate::space::Points;
 use crate::wavevector::WaveVector;
 
-/// The residuals prepared, with all coefficients found so far.
+/// The residuals of balances, boundary conditions and closures, with their coefficients through the degree completed.
 pub(super) struct Forcing {
     equations: Vec<Equations>,
+    /// `None` where the densities of all closures are linear.
     integrals: Option<Integrals>,
 }
 
-/// A residual on one family of points.
+/// A residual at the points of one family.
 pub(super) struct Group {
     points: Points,
     program: Program,
     levels: Levels,
-    /// Jets that the program reads, by their position among those of the residual.
+    /// Positions in `jets` of those that the program reads.
     read: Vec<usize>,
+    /// All jets of the residual.
     jets: Vec<Jet>,
     weight: Option<Weight>,
 }
@@ -37,9 +39,10 @@ struct Equations {
     rows: Vec<Row>,
 }
 
-/// Where one output goes, and what it is multiplied by at each point.
+/// Where one output of a residual stands among the rows of the collocated problem.
 struct Row {
     offset: usize,
+    /// By point: the factor that makes a right-hand side in the solver's basis of it.
     factors: Vec<C64>,
 }
 
@@ -47,53 +50,10 @@ impl Forcing {
     /// The residuals around the base state of a problem.
     ///
     /// # Errors
-    /// A model without residual.
+    /// The model has no unexpanded residual.
     pub fn new(prepare: &Preparation) -> Result<Self> {
-        let problem = prepare.problem;
-        let model = problem.model();
-        let missing = || Error::computation("the model has no unexpanded residual");
-        let balances = model.residual(ResidualId::Balances).ok_or_else(missing)?;
-        let layout = &problem.direct.layout;
-        let mut equations: Vec<Equations> = Vec::new();
-        for (points, same) in layout.groups() {
-            let states = prepare.states(points);
-            let divisors = states
-                .iter()
-                .map(|state| evaluate(model, KernelId::Divisors, state));
-            let divisors: Vec<Vec<f64>> = divisors.collect();
-            let rows = same.iter().map(|&row| Row {
-                offset: layout.rows[row].offset,
-                factors: divisors
-                    .iter()
-                    .map(|d| problem.direct.row_factor(row) / -d[row.index()])
-                    .collect(),
-            });
-            let outputs: Vec<usize> = same.iter().map(|row| row.index()).collect();
-            equations.push(Equations {
-                rows: rows.collect(),
-                group: prepare.group(balances, &outputs, points),
-            });
-        }
-        let case = ResidualId::Conditions(problem.base.case);
-        for end in End::BOTH {
-            let walls = problem.direct.walls.iter().enumerate();
-            let walls: Vec<usize> = walls
-                .filter(|(_, wall)| wall.end == end)
-                .map(|(index, _)| index)
-                .collect();
-            let Some(conditions) = model.residual(case).filter(|_| !walls.is_empty()) else {
-                continue;
-            };
-            // 0 = W x + N(x): a row of L, and its data beside those of the balances.
-            let rows = walls.iter().map(|&index| Row {
-                offset: layout.walls + index,
-                factors: vec![problem.direct.wall_factor(&problem.direct.walls[index])],
-            });
-            equations.push(Equations {
-                rows: rows.collect(),
-                group: prepare.group(conditions, &walls, Points::end(end)),
-            });
-        }
+        let mut equations = Equations::balances(prepare)?;
+        equations.extend(Equations::conditions(prepare));
         Ok(Forcing {
             equations,
             integrals: Integrals::new(prepare),
@@ -107,7 +67,7 @@ impl Forcing {
             && self.integrals.as_ref().is_none_or(Integrals::is_real)
     }
 
-    /// Begins a degree, the next: `wanted` are the stored monomials that are asked for.
+    /// Begins the next degree. `wanted` are the indices of the stored monomials that will be asked for.
     pub fn begin(&mut self, monomials: &Monomials, degree: usize, wanted: &[usize]) {
         for Equations { group, .. } in &mut self.equations {
             group.begin(monomials, degree, wanted);
@@ -117,23 +77,22 @@ impl Forcing {
         }
     }
 
-    /// G of every stored monomial of a degree, physical but for the basis of rows: `known` are modes that hold the part
-    /// of the rates that is known.
+    /// G_α of every stored monomial of the degree begun, `[index]`. Of `moving[index]` the rate alone is read: what lower
+    /// orders contribute to ∂t X beside z^p z̄^s.
     pub fn outputs(
         &mut self,
         problem: &Problem,
         monomials: &Monomials,
         degree: usize,
-        known: &[Option<Mode>],
+        moving: &[Option<Mode>],
     ) -> Vec<PhysicalForcing> {
-        let mut found = vec![PhysicalForcing::new(problem); known.len()];
+        let mut forcings = vec![PhysicalForcing::new(problem); moving.len()];
         for Equations { group, rows } in &mut self.equations {
-            let moving = |jet: Jet| jet.t > 0;
-            let table = group.table(problem, known, moving);
+            let table = group.table(problem, moving, |jet| jet.t > 0);
             let jets = |jet: usize, index: usize| table[index].get(jet)?.clone();
             let outputs = group.outputs(monomials, degree, &jets);
             for (row, values) in rows.iter().zip(outputs) {
-                for (forcing, values) in found.iter_mut().zip(values) {
+                for (forcing, values) in forcings.iter_mut().zip(values) {
                     for (i, (value, factor)) in values.iter().zip(&row.factors).enumerate() {
                         forcing.values[row.offset + i] = *value;
                         forcing.factors[row.offset + i] = *factor;
@@ -143,14 +102,14 @@ impl Forcing {
         }
         if let Some(integrals) = &mut self.integrals {
             let integrals = integrals.outputs(monomials, degree);
-            for (forcing, integrals) in found.iter_mut().zip(integrals) {
+            for (forcing, integrals) in forcings.iter_mut().zip(integrals) {
                 forcing.integrals = integrals;
             }
         }
-        found
+        forcings
     }
 
-    /// Completes a degree with the modes found.
+    /// Completes the degree begun with its modes.
     pub fn complete(
         &mut self,
         problem: &Problem,
@@ -167,14 +126,78 @@ impl Forcing {
     }
 }
 
-/// The residual's coefficient of one monomial, and what makes a right-hand side in the solver's basis of it.
+impl Equations {
+    /// The balances, by the points at which they are collocated.
+    fn balances(prepare: &Preparation) -> Result<Vec<Self>> {
+        let problem = prepare.problem;
+        let model = problem.model();
+        let missing = || Error::computation("the model has no unexpanded residual");
+        let residual = model.residual(ResidualId::Balances).ok_or_else(missing)?;
+        let layout = &problem.direct.layout;
+        let mut equations: Vec<Equations> = Vec::new();
+        for (points, balances) in layout.groups() {
+            // L and M0 are those of the balances over a divisor, by which the residual is divided likewise.
+            let states = prepare.states(points);
+            let divisors = states
+                .iter()
+                .map(|state| evaluate(model, KernelId::Divisors, state));
+            let divisors: Vec<Vec<f64>> = divisors.collect();
+            let rows = balances.iter().map(|&balance| Row {
+                offset: layout.rows[balance].offset,
+                factors: divisors
+                    .iter()
+                    .map(|d| problem.direct.row_factor(balance) / -d[balance.index()])
+                    .collect(),
+            });
+            let outputs: Vec<usize> = balances.iter().map(|balance| balance.index()).collect();
+            equations.push(Equations {
+                rows: rows.collect(),
+                group: prepare.group(residual, &outputs, points),
+            });
+        }
+        Ok(equations)
+    }
+
+    /// The boundary conditions, by end.
+    fn conditions(prepare: &Preparation) -> Vec<Self> {
+        let problem = prepare.problem;
+        let case = ResidualId::Conditions(problem.base.case);
+        let mut equations: Vec<Equations> = Vec::new();
+        for end in End::BOTH {
+            let walls = problem.direct.walls.iter().enumerate();
+            let walls: Vec<usize> = walls
+                .filter(|(_, wall)| wall.end == end)
+                .map(|(index, _)| index)
+                .collect();
+            let conditions = problem.model().residual(case);
+            let Some(conditions) = conditions.filter(|_| !walls.is_empty()) else {
+                continue;
+            };
+            // A condition is 0 = W X + N(X), W being a row of L: −L X = N(X).
+            let rows = walls.iter().map(|&index| Row {
+                offset: problem.direct.layout.walls + index,
+                factors: vec![problem.direct.wall_factor(&problem.direct.walls[index])],
+            });
+            equations.push(Equations {
+                rows: rows.collect(),
+                group: prepare.group(conditions, &walls, Points::end(end)),
+            });
+        }
+        equations
+    }
+}
+
+/// The residuals' coefficients of one monomial in physical values, of which either G_α or that of the conjugate
+/// monomial can be made.
 #[derive(Clone)]
 pub(super) struct PhysicalForcing {
+    /// Coefficients in balances and boundary conditions, by row.
     values: Vec<C64>,
+    /// By row: the factor that makes a right-hand side in the solver's basis of a value.
     factors: Vec<C64>,
-    /// ∫ F dy of each closure; none where all densities are linear.
+    /// ∫ F dy of each closure; empty where all densities are linear.
     integrals: Vec<C64>,
-    /// What brings them into the solver's basis, with the sign of a right-hand side.
+    /// By closure: the factor that makes a right-hand side in the solver's basis of an integral.
     closure_factors: Vec<C64>,
 }
 
@@ -189,12 +212,12 @@ impl PhysicalForcing {
         }
     }
 
-    /// The right-hand side in the solver's basis.
+    /// G_α in the solver's basis.
     pub fn right(&self) -> RightSide {
         self.right_of(|value| value)
     }
 
-    /// That of the conjugate monomial.
+    /// G of the conjugate monomial in the solver's basis.
     pub fn conjugate_right(&self) -> RightSide {
         self.right_of(|value| value.conj())
     }
@@ -217,14 +240,16 @@ impl PhysicalForcing {
 /// What residuals are prepared from.
 pub(super) struct Preparation<'a> {
     pub problem: &'a Problem,
-    /// The wavenumber that a spec may name.
+    /// The wavenumber that the spec's block `amplitude` may name.
     k: WaveVector,
+    /// Whether each jet is i times real, where that or real is all they are.
     odd: Option<Vec<bool>>,
     weight: Option<Weight>,
 }
 
 impl<'a> Preparation<'a> {
-    /// For numbers of some arithmetic, every jet times its weight where there are weights.
+    /// Residuals around the base state of `problem`. In real arithmetic every mode has to be its mirror image. With
+    /// weights every jet is multiplied by its weight.
     pub fn new(
         problem: &'a Problem,
         k: WaveVector,
@@ -246,7 +271,7 @@ impl<'a> Preparation<'a> {
             .collect()
     }
 
-    /// Some outputs of a residual on a family of points.
+    /// Some outputs of a residual at the points of a family.
     pub fn group(&self, kernel: &Kernel, outputs: &[usize], points: Points) -> Group {
         let structure = self.problem.structure();
         let states = self.states(points);
@@ -267,7 +292,7 @@ impl<'a> Preparation<'a> {
     }
 }
 
-/// Which jets are i times real where every mode is its own mirror image.
+/// Whether each jet is i times real, where every mode is its mirror image; `None` in complex arithmetic.
 fn odd_jets(problem: &Problem, jets: &[Jet], arithmetic: Arithmetic) -> Option<Vec<bool>> {
     let parity = problem.structure().parity.as_ref()?;
     let odd = |jet: &Jet| parity.fields[jet.of] != (jet.x % 2 == 1);
@@ -280,11 +305,13 @@ impl Group {
         self.program.arithmetic() == Arithmetic::Real
     }
 
+    /// Begins the next degree, for the stored monomials `wanted`.
     pub fn begin(&mut self, monomials: &Monomials, degree: usize, wanted: &[usize]) {
         self.levels.begin(&self.program, monomials, degree, wanted);
     }
 
-    /// The outputs of the degree begun, `[output][monomial][point]`, with the given coefficients of the jets.
+    /// The outputs of the degree begun, `[output][monomial][point]`, with `jets(jet, monomial)` as the coefficients of the
+    /// jets, `[point]`; `None` is zero.
     pub fn outputs(
         &mut self,
         monomials: &Monomials,
@@ -294,6 +321,7 @@ impl Group {
         self.levels.outputs(&self.program, monomials, degree, jets)
     }
 
+    /// Completes the degree begun with its modes, `[monomial]`.
     pub fn complete(
         &mut self,
         problem: &Problem,
@@ -307,7 +335,7 @@ impl Group {
             .complete(&self.program, monomials, degree, &jets);
     }
 
-    /// The chosen jets of each mode at the points, `[mode][jet][point]`; nothing for one that is zero.
+    /// The chosen jets of each mode at the points, `[mode][jet][point]`; `None` for a jet that is zero or not chosen.
     fn table(
         &self,
         problem: &Problem,

@@ -1,8 +1,11 @@
-//! What modes of lower order make of the integral conditions: their densities run on truncated polynomials.
+//! Right-hand sides of the closures at q = 0: the densities of integral conditions run on truncated polynomials.
 //!
-//! A condition keeps ∫ D(X) dy, averaged over x, at its value in the base state. Of its expansion the coefficient of
-//! z^p z̄^s, with X_ps itself left out, is ∫ F_ps dy; the row of the closure then reads
-//! ∫ (linear part of D) X_ps dy = −∫ F_ps dy. A mode with ∂x in it averages to zero and has no such row.
+//! A condition keeps ∫ D(X) dy, averaged over x, at its value in the base state. In its expansion the coefficient of
+//! z^p z̄^s is ∫ D1 X_α dy + ∫ F_α dy, with D1 the linear part of D and F_α made of lower orders, so that
+//!
+//! ∫ D1 X_α dy = −∫ F_α dy.
+//!
+//! A coefficient with q ≠ 0 averages to zero over x, and has no such row.
 
 use super::forcing::{Group, Preparation};
 use super::mode::Mode;
@@ -11,7 +14,7 @@ use crate::model::{C64, ResidualId};
 use crate::problem::Problem;
 use crate::series::{Arithmetic, Monomials};
 
-/// The densities of a problem's closures prepared, with all coefficients found so far.
+/// The densities of a problem's closures, with their coefficients through the degree completed.
 pub(super) struct Integrals {
     group: Group,
     /// Weights of the quadrature.
@@ -19,7 +22,7 @@ pub(super) struct Integrals {
 }
 
 impl Integrals {
-    /// The densities around the base state of a problem; nothing where all are linear.
+    /// The densities around the base state of a problem; `None` where all are linear.
     pub fn new(prepare: &Preparation) -> Option<Self> {
         let problem = prepare.problem;
         let residual = ResidualId::Integrals(problem.base.case);
@@ -38,11 +41,12 @@ impl Integrals {
         self.group.is_real()
     }
 
+    /// Begins the next degree, for the stored monomials `wanted`.
     pub fn begin(&mut self, monomials: &Monomials, degree: usize, wanted: &[usize]) {
         self.group.begin(monomials, degree, wanted);
     }
 
-    /// ∫ F dy of every stored monomial of the degree begun, one number a border of the problem.
+    /// ∫ F_α dy of every stored monomial of the degree begun, `[monomial][border of the problem]`.
     pub fn outputs(&mut self, monomials: &Monomials, degree: usize) -> Vec<Vec<C64>> {
         let count = monomials.of(degree).len();
         let jets = |_: usize, _: usize| None;
@@ -55,6 +59,7 @@ impl Integrals {
         (0..count).map(of).collect()
     }
 
+    /// Completes the degree begun with its modes, `[monomial]`.
     pub fn complete(
         &mut self,
         problem: &Problem,
@@ -66,8 +71,8 @@ impl Integrals {
     }
 }
 
-/// Right-hand sides of the closures for X[0;2]: −2 ∫ D2(X, X̄) dy, in the solver's basis; nothing where all densities
-/// are linear. Each jet is multiplied by its weight where there are weights.
+/// Right-hand sides of the closures for X[0;2], −2 ∫ D2(X, X̄) dy, in the solver's basis, one for each border of the
+/// problem; empty where all densities are linear. With weights every jet is multiplied by its weight.
 pub(super) fn second_order(
     problem: &Problem,
     fundamental: &Mode,
@@ -86,8 +91,8 @@ pub(super) fn second_order(
     let mean = monomials.of(2).iter().position(|m| m.is_real());
     let mean: Vec<usize> = mean.into_iter().collect();
     integrals.begin(&monomials, 2, &mean);
-    let found = integrals.outputs(&monomials, 2);
-    let values = mean.first().map_or(&[][..], |&index| &found[index]);
+    let by_monomial = integrals.outputs(&monomials, 2);
+    let values = mean.first().map_or(&[][..], |&index| &by_monomial[index]);
     let right = values.iter().zip(&problem.borders);
     right
         .map(|(value, border)| -value * border.factor())

@@ -5,23 +5,23 @@ use crate::problem::{Problem, Profile, symbol};
 use crate::space::{Place, Points};
 use crate::wavevector::WaveVector;
 
-/// Values of a mode and of its time derivative, at the unknowns' points.
+/// One Fourier mode e^{iqx} of the expansion, in physical values at the points of the unknowns.
 #[derive(Clone, Debug)]
 pub struct Mode {
-    /// Its wavenumber: ∂x → i q.
+    /// Wavenumber: ∂x is multiplication by i q.
     pub q: WaveVector,
-    /// X
+    /// X_α, all fields after each other; by the layout of the direct problem.
     pub values: Profile,
-    /// What stands beside the same amplitudes in ∂t X.
+    /// The coefficient of the same monomial in ∂t X, with the layout of `values`.
     pub rate: Profile,
-    /// The part of it that is no multiple of a mode: constants that drift (mean modes alone).
+    /// The part of `rate` in which constants drift, such as the constant of a pressure; only at q = 0.
     pub drift: Option<Profile>,
-    /// Unknown numbers (mean modes alone).
+    /// Unknown numbers of the model, such as a mean pressure gradient; only at q = 0.
     pub numbers: Vec<(FieldId, C64)>,
 }
 
 impl Mode {
-    /// A mode that moves as `rate` says.
+    /// A mode without drift and unknown numbers.
     pub fn new(q: WaveVector, values: Profile, rate: Profile) -> Self {
         Mode {
             q,
@@ -32,7 +32,7 @@ impl Mode {
         }
     }
 
-    /// The mode of −q: complex conjugate.
+    /// The complex conjugate, a mode of −q.
     pub fn conjugate(&self) -> Mode {
         let numbers = self.numbers.iter();
         Mode {
@@ -44,25 +44,26 @@ impl Mode {
         }
     }
 
-    /// Jets at some points, one after another; those that differ in ∂x alone share one derivative of the profile.
+    /// Jets at the points of a family, `[jet][point]`. Jets that differ in ∂x alone share one derivative of the profile.
     pub fn columns(&self, problem: &Problem, jets: &[Jet], points: Points) -> Vec<Vec<C64>> {
-        let mut derived: Vec<(Jet, Vec<C64>)> = Vec::new();
+        let mut profiles: Vec<(Jet, Vec<C64>)> = Vec::new();
         let column = |&jet: &Jet| {
-            let profile = jet.profile();
-            let known = derived.iter().position(|(other, _)| *other == profile);
-            let known = known.unwrap_or_else(|| {
-                derived.push((profile, self.profile(problem, profile, points)));
-                derived.len() - 1
+            let without_x = jet.profile();
+            let computed = profiles.iter().position(|(jet, _)| *jet == without_x);
+            let position = computed.unwrap_or_else(|| {
+                profiles.push((without_x, self.profile(problem, without_x, points)));
+                profiles.len() - 1
             });
             let factor = symbol(&jet, self.q);
-            let mut values: Vec<C64> = derived[known].1.iter().map(|v| factor * v).collect();
+            let profile = &profiles[position].1;
+            let mut values: Vec<C64> = profile.iter().map(|v| factor * v).collect();
             problem.disturb_jet(jet, &mut values);
             values
         };
         jets.iter().map(column).collect()
     }
 
-    /// Jets at some points, point by point.
+    /// Jets at the points of a family, point by point.
     pub fn jets(&self, problem: &Problem, jets: &[Jet], points: Points) -> JetTable {
         let mut values = vec![C64::new(0.0, 0.0); points.count() * jets.len()];
         let columns = self.columns(problem, jets, points);
@@ -78,8 +79,8 @@ impl Mode {
         }
     }
 
-    /// What rounding can make of the jets, point by point, in units of the machine's precision:
-    /// Σ |D| max |value| in place of D value.
+    /// Bounds of the rounding errors of jets, `[point][jet]`, in units of the machine's precision times the jet:
+    /// Σ_j |D_ij| max |value| in place of Σ_j D_ij value_j.
     pub fn rounding(&self, problem: &Problem, jets: &[Jet], points: Points) -> Vec<Vec<f64>> {
         let mut table = vec![vec![0.0; jets.len()]; points.count()];
         for (position, jet) in jets.iter().enumerate() {
@@ -101,31 +102,31 @@ impl Mode {
         table
     }
 
-    /// One jet at some points.
+    /// One jet at the points of a family, `[point]`.
     pub fn jet(&self, problem: &Problem, jet: Jet, points: Points) -> Vec<C64> {
         let factor = symbol(&jet, self.q);
         let values = self.profile(problem, jet, points).into_iter();
         values.map(|v| factor * v).collect()
     }
 
-    /// One jet at any places.
+    /// One jet at any places of the interval, `[place]`.
     pub fn at(&self, problem: &Problem, jet: Jet, places: &[Place]) -> Vec<C64> {
         match problem.direct.layout.columns.find(jet.of) {
             None => vec![self.number(jet.of); places.len()],
             Some(block) => {
-                let own = self.jet(problem, jet, block.points);
-                problem.space().interpolated(block.points, &own, places)
+                let values = self.jet(problem, jet, block.points);
+                problem.space().interpolated(block.points, &values, places)
             }
         }
     }
 
     /// An unknown number; zero where the mode has none.
     fn number(&self, field: FieldId) -> C64 {
-        let found = self.numbers.iter().find(|(other, _)| *other == field);
-        found.map_or(C64::new(0.0, 0.0), |(_, value)| *value)
+        let number = self.numbers.iter().find(|(id, _)| *id == field);
+        number.map_or(C64::new(0.0, 0.0), |(_, value)| *value)
     }
 
-    /// ∂t and ∂y of a jet at some points, its x-derivatives left out.
+    /// A jet without its x-derivatives, at the points of a family.
     fn profile(&self, problem: &Problem, jet: Jet, points: Points) -> Vec<C64> {
         let Some(block) = problem.direct.layout.columns.find(jet.of) else {
             return vec![self.number(jet.of); points.count()];
@@ -138,7 +139,7 @@ impl Mode {
     }
 }
 
-/// Jets at some points, point by point.
+/// Jets at the points of a family, point by point.
 #[derive(Clone, Debug)]
 pub struct JetTable {
     jets: usize,
@@ -146,12 +147,12 @@ pub struct JetTable {
 }
 
 impl JetTable {
-    /// All jets at one point.
+    /// All jets at one point, `[jet]`.
     pub fn at(&self, point: usize) -> &[C64] {
         &self.values[point * self.jets..][..self.jets]
     }
 
-    /// Multiplies each jet, by its position, by a factor of its own.
+    /// Multiplies every jet by `factor(position of the jet)`.
     pub fn weigh(&mut self, factor: impl Fn(usize) -> C64) {
         for (position, value) in self.values.iter_mut().enumerate() {
             *value *= factor(position % self.jets);

@@ -7,17 +7,19 @@ use crate::problem::{Problem, Profile, Turn};
 use crate::space::Place;
 use crate::wavevector::WaveVector;
 
-/// Sizes of a fundamental whose powers double precision can hold.
+/// Sizes of a fundamental whose square and cube, and the second-order modes they force, stay within double precision
+/// (10⁻³⁰⁸ to 10³⁰⁸).
 const SIZES: std::ops::Range<f64> = 1e-60..1e60;
 
-/// The factor by which the fundamental has to be multiplied.
+/// The factor by which the eigenvector `values` has to be multiplied to become X[1;1].
 ///
-/// Its modulus meets the spec's condition. Its phase makes the profile value of largest modulus of
-/// the first field real and positive, or, for a point value, that value; imaginary for a field that is odd
-/// in the mirror x → −x, so that a steady pattern is its own mirror image.
+/// Its modulus meets the condition of the spec's block `amplitude`. Its phase makes one value real and positive: the
+/// point value of that condition, or the largest value of the first field that is present. For a field that is odd in
+/// the mirror x → −x it makes that value imaginary, so that a steady pattern equals its mirror image.
 ///
 /// # Errors
-/// A mode whose normalising quantity vanishes.
+/// The quantity that is to be normalised vanishes, its place lies outside of the interval, or X[1;1] would be out of the
+/// range of double precision.
 pub fn normalise(problem: &Problem, k: WaveVector, values: &Profile) -> Result<C64> {
     let factor = unchecked(problem, k, values)?;
     let size = factor.norm() * values.largest();
@@ -31,6 +33,7 @@ pub fn normalise(problem: &Problem, k: WaveVector, values: &Profile) -> Result<C
     )))
 }
 
+/// [`normalise`] without the check of the size.
 fn unchecked(problem: &Problem, k: WaveVector, values: &Profile) -> Result<C64> {
     let amplitude = &problem.structure().amplitude;
     let state = problem.base.at(Place::MIDDLE, k);
@@ -52,9 +55,9 @@ fn unchecked(problem: &Problem, k: WaveVector, values: &Profile) -> Result<C64> 
         if wanted.is_nan() || wanted <= 0.0 {
             return Err(vanishes(problem));
         }
-        let block = &problem.direct.layout.columns[field];
-        let own = block.of(values);
-        if value.norm() <= 1e-12 * own.iter().map(|v| v.norm()).fold(0.0, f64::max) {
+        // Relative to the largest value of the field: at a node of the mode there is rounding alone.
+        let profile = problem.direct.layout.columns[field].of(values);
+        if value.norm() <= 1e-12 * profile.iter().map(|v| v.norm()).fold(0.0, f64::max) {
             return Err(vanishes(problem));
         }
         return Ok(phase_of(problem, field) * value.conj() / value.norm_sqr() * wanted);
@@ -75,8 +78,8 @@ fn vanishes(problem: &Problem) -> Error {
 
 fn point_value(problem: &Problem, values: &Profile, field: FieldId, place: f64) -> C64 {
     let (space, block) = (problem.space(), &problem.direct.layout.columns[field]);
-    let own = block.of(values);
-    space.interpolated(block.points, own, &[space.place(place)])[0]
+    let profile = block.of(values);
+    space.interpolated(block.points, profile, &[space.place(place)])[0]
 }
 
 /// ∫ Σ w|q|² dy
@@ -84,11 +87,10 @@ fn weighted_square(problem: &Problem, values: &Profile) -> f64 {
     let fields = &problem.structure().amplitude.weighted;
     let mut square = 0.0;
     for (&field, gram) in fields.iter().zip(&problem.gram) {
-        let block = &problem.direct.layout.columns[field];
-        let own = block.of(values);
-        for (j, y) in own.iter().enumerate() {
+        let profile = problem.direct.layout.columns[field].of(values);
+        for (j, y) in profile.iter().enumerate() {
             let column = gram.col(j);
-            let product: C64 = own
+            let product: C64 = profile
                 .iter()
                 .zip(column.iter())
                 .map(|(x, g)| x.conj() * *g)
@@ -99,10 +101,11 @@ fn weighted_square(problem: &Problem, values: &Profile) -> f64 {
     square
 }
 
+/// The phase factor that turns the largest value of the first field that is present, above 10⁻⁹ of all.
 fn phase(problem: &Problem, values: &Profile) -> C64 {
     for (field, block) in problem.direct.layout.columns.pairs() {
-        let own = block.of(values);
-        let Some(largest) = own.iter().max_by(|a, b| a.norm().total_cmp(&b.norm())) else {
+        let profile = block.of(values).iter();
+        let Some(largest) = profile.max_by(|a, b| a.norm().total_cmp(&b.norm())) else {
             continue;
         };
         if largest.norm() > 1e-9 * values.largest() {
@@ -112,7 +115,7 @@ fn phase(problem: &Problem, values: &Profile) -> C64 {
     C64::new(1.0, 0.0)
 }
 
-/// i for a field that is odd in the mirror.
+/// i for a field that is odd in the mirror x → −x, 1 for any other.
 fn phase_of(problem: &Problem, field: FieldId) -> C64 {
     let parity = problem.structure().parity.as_ref();
     Turn::of(parity.is_some_and(|p| p.fields[field])).factor()

@@ -1,4 +1,6 @@
-//! Output functionals of the state, to second order in the amplitude.
+//! Output functionals of the state, to second order in the amplitude:
+//!
+//! F = F⁰ + A² (F1 X[0;2] + 2 F2(X, X̄)) + …
 
 use super::cubic::LandauPoint;
 use super::mode::Mode;
@@ -6,7 +8,7 @@ use crate::model::layout::{OutputTerms, read_output};
 use crate::model::{C64, Jet, KernelId, evaluate};
 use crate::space::Place;
 
-/// The value of every output functional: at the base, and the A² correction of its mean.
+/// Every output functional, `[value in the base state, coefficient of A² in its mean over x]`, in the order of the spec.
 pub fn outputs(point: &LandauPoint) -> Vec<[f64; 2]> {
     let problem = point.problem.as_ref();
     let (structure, space) = (problem.structure(), problem.space());
@@ -20,12 +22,11 @@ pub fn outputs(point: &LandauPoint) -> Vec<[f64; 2]> {
     let mut values = Vec::new();
     for (index, output) in structure.outputs.iter().enumerate() {
         // Places with weights: one, or a quadrature.
-        let (places, weights): (Vec<Place>, Vec<f64>) = match output.at_point {
-            true => (
-                vec![space.place(terms_at(index, Place::MIDDLE).place)],
-                vec![1.0],
-            ),
-            false => problem.quadrature().nodes.into_iter().unzip(),
+        let (places, weights): (Vec<Place>, Vec<f64>) = if output.at_point {
+            let place = space.place(terms_at(index, Place::MIDDLE).place);
+            (vec![place], vec![1.0])
+        } else {
+            problem.quadrature().nodes.into_iter().unzip()
         };
         let terms: Vec<OutputTerms<f64>> = places.iter().map(|&at| terms_at(index, at)).collect();
         let at = |mode: &Mode, jet: Jet| -> Vec<C64> { mode.at(problem, jet, &places) };
@@ -34,11 +35,14 @@ pub fn outputs(point: &LandauPoint) -> Vec<[f64; 2]> {
             let coefficients = terms.iter().zip(&weights);
             let coefficients = coefficients.map(|(terms, w)| w * terms.coefficients[position]);
             match monomial.as_slice() {
+                // F⁰
                 [] => total[0] += coefficients.sum::<f64>(),
+                // F1 X[0;2]
                 [jet] => {
                     let values = at(mean, *jet);
                     total[1] += coefficients.zip(values).map(|(c, v)| c * v.re).sum::<f64>();
                 }
+                // 2 F2(X, X̄)
                 [a, b] => {
                     let pairs = at(fundamental, *a).into_iter().zip(at(&conjugate, *b));
                     let products = coefficients.zip(pairs);
@@ -46,6 +50,7 @@ pub fn outputs(point: &LandauPoint) -> Vec<[f64; 2]> {
                         .map(|(c, (a, b))| 2.0 * c * (a * b).re)
                         .sum::<f64>();
                 }
+                // Products of more jets begin at A⁴.
                 _ => {}
             }
         }

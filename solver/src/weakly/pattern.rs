@@ -1,5 +1,5 @@
-//! Patterns in the plane: base state, fundamental, and the expansion through third order, of the fields and of
-//! expressions in them.
+//! Patterns in the plane: fields, and expressions in them, of the base state with the modes of the expansion through third
+//! order.
 
 use super::cubic::LandauPoint;
 use super::expansion::Expansion;
@@ -14,47 +14,47 @@ use crate::space::Place;
 pub struct PlaneField {
     /// The field, or the expression as it was written.
     pub name: String,
-    /// In the base state, `[y]`.
+    /// Values in the base state X⁰, `[y]`.
     pub base: Vec<f64>,
-    /// At X⁰ + A X[1;1] e^{ikx} + c.c., P (4.5).
+    /// Values at X⁰ + A X[1;1] e^{ikx} + c.c., P (4.5).
     pub linear: Vec<Vec<f64>>,
-    /// At X⁰ and all modes through third order, P (4.4).
+    /// Values at X⁰ and all modes through third order, P (4.4).
     pub nonlinear: Vec<Vec<f64>>,
 }
 
 /// Fields over a rectangle of the (x, y)-plane.
 #[derive(Clone, Debug)]
 pub struct Pattern {
-    /// Along the periodic coordinate.
+    /// Places along the periodic coordinate.
     pub x: Vec<f64>,
-    /// One height where the model has no cross-stream coordinate.
+    /// Heights; a single one where the model has no cross-stream coordinate.
     pub y: Vec<f64>,
-    /// A
+    /// The amplitude A.
     pub amplitude: f64,
-    /// The profiles.
+    /// The fields that are profiles.
     pub fields: Table<FieldId, PlaneField>,
-    /// The expressions that were asked for, in their order.
+    /// The expressions that were asked for, in the order of asking.
     pub derived: Vec<PlaneField>,
 }
 
 /// The order of the expansion that is drawn.
 const ORDER: usize = 3;
 
-/// How fine, and how many wavelengths.
+/// The rectangle, and the grid in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
     /// Points along x.
     pub columns: usize,
     /// Points along y.
     pub rows: usize,
-    /// Length along x.
+    /// Length along x, in wavelengths 2π/k.
     pub wavelengths: f64,
 }
 
-/// The pattern of a Landau point at amplitude A, with expressions beside the fields.
+/// The pattern of a Landau point at amplitude A: every field, and the given expressions in fields.
 ///
 /// # Errors
-/// A resonance at third order.
+/// A problem of third order is singular, or a value is not finite.
 pub fn pattern(
     point: &LandauPoint,
     amplitude: f64,
@@ -74,13 +74,12 @@ pub fn pattern(
         .iter()
         .map(|&at| problem.base.at(at, point.pair.k))
         .collect();
-    let modes = expansion.known().into_iter();
-    let modes = modes.map(|(monomial, mode)| (monomial.degree(), mode));
+    let modes = expansion.coefficients().into_iter();
     let sum = Superposition {
         problem,
         places: &places,
         states: &states,
-        modes: modes.collect(),
+        modes: modes.map(|(alpha, mode)| (alpha.degree(), mode)).collect(),
         amplitude,
         x: &x,
     };
@@ -101,45 +100,37 @@ pub fn pattern(
     };
     let fields: Table<FieldId, PlaneField> = structure.profiles().map(field).collect();
     let derived: Vec<PlaneField> = expressions.iter().map(derived).collect();
-    if let Some(field) = fields
-        .iter()
-        .chain(&derived)
-        .find(|field| !field.is_finite())
-    {
-        return Err(Error::computation(format!(
-            "`{}` has no finite value somewhere in the plane at amplitude A = {amplitude:e}; try a smaller --amplitude",
-            field.name
-        )));
-    }
-    Ok(Pattern {
+    let pattern = Pattern {
         amplitude,
         fields,
         derived,
         y: places.iter().map(|&place| space.y(place)).collect(),
         x,
-    })
+    };
+    pattern.check_finite()?;
+    Ok(pattern)
 }
 
-/// X⁰ + Σ A^m X over modes and their conjugates.
+/// X⁰ + Σ A^m X[k;m] e^{ikx} over modes and their conjugates, on the grid of places and x.
 struct Superposition<'a> {
     problem: &'a Problem,
     places: &'a [Place],
     states: &'a [Vec<f64>],
-    /// Each with its degree in A.
+    /// Every mode with its degree in A.
     modes: Vec<(usize, Mode)>,
     amplitude: f64,
     x: &'a [f64],
 }
 
 impl Superposition<'_> {
-    /// A jet of the base state.
+    /// A jet of the base state, `[y]`.
     fn base(&self, jet: Jet) -> Vec<f64> {
         let structure = self.problem.structure();
         let value = |state: &Vec<f64>| structure.base_jet(jet, state);
         self.states.iter().map(value).collect()
     }
 
-    /// A jet of the sum through an order.
+    /// A jet of the sum through an order, `[y][x]`.
     fn to(&self, order: usize, jet: Jet) -> Vec<Vec<f64>> {
         let base = self.base(jet);
         let modes = self.modes.iter().filter(|(degree, _)| *degree <= order);
@@ -158,7 +149,7 @@ impl Superposition<'_> {
         (0..base.len()).map(row).collect()
     }
 
-    /// An expression at the sum through an order.
+    /// An expression at the sum through an order, `[y][x]`.
     fn of(&self, order: usize, expression: &Expression) -> Vec<Vec<f64>> {
         let jets = expression.jets.iter();
         let jets: Vec<Vec<Vec<f64>>> = jets.map(|&jet| self.to(order, jet)).collect();
@@ -182,7 +173,19 @@ impl PlaneField {
 }
 
 impl Pattern {
-    /// A field by name, or an expression as it was written.
+    /// The error of a field or expression that is not finite somewhere.
+    fn check_finite(&self) -> Result<()> {
+        let mut fields = self.fields.iter().chain(&self.derived);
+        let Some(field) = fields.find(|field| !field.is_finite()) else {
+            return Ok(());
+        };
+        Err(Error::computation(format!(
+            "`{}` has no finite value somewhere in the plane at amplitude A = {:e}; try a smaller --amplitude",
+            field.name, self.amplitude
+        )))
+    }
+
+    /// The field of a name, or the expression that was written so.
     pub fn quantity(&self, name: &str) -> Option<&PlaneField> {
         let mut all = self.fields.iter().chain(&self.derived);
         all.find(|field| field.name == name)

@@ -1,40 +1,43 @@
-//! Newton's method for states of amplitude equations that stand, drift or oscillate with one frequency a mode.
+//! Newton's method for equilibria of amplitude equations: every amplitude is constant or turns at a constant frequency.
 
 use super::system::{AmplitudeSystem, Term, power};
 use crate::model::C64;
 use crate::numerics::{Failure, Linearised, Newton, System};
 use nalgebra::{DMatrix, DVector};
 
-/// From one start.
+/// Whole steps from one start. Starts are many and cheap, and one from which the iteration does not converge is given up.
 const METHOD: Newton = Newton {
     most_steps: 60,
     least_part: 1.0,
 };
-/// What is left of the equations at a solution, relative to their terms.
+/// Residual of an equation at a solution, relative to the sum of its terms' absolute values. A hundred times above what
+/// the rounding of a few dozen terms leaves.
 const TOLERANCE: f64 = 1e-11;
-/// What rounding leaves of a sum, relative to its terms.
+/// Rounding error of a sum, relative to the sum of its terms' absolute values.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// A frequency below this part of the rates is zero.
+/// A frequency below this part of the largest term of dz_j/dt over z_j is zero: above the rounding of a solution to
+/// [`TOLERANCE`], and below any frequency that matters.
 const STILL: f64 = 1e-9;
 
-/// dz_j/dt = i Σ_a ν_a w_aj z_j for the modes present, in (Re z, Im z, …, ν).
+/// dz_j/dt = i Σ_a ν_a w_aj z_j for the modes present; unknowns are Re z_j, Im z_j by mode, then the ν_a.
 struct Standing<'a> {
     system: &'a AmplitudeSystem,
     present: &'a [usize],
+    /// w, `[symmetry][mode]`.
     symmetries: &'a [Vec<f64>],
-    /// Between these sizes a state is looked for.
+    /// Range of max |z_j| in which a state is looked for.
     sizes: std::ops::Range<f64>,
 }
 
-/// What is known at one point: rates with the terms that they are the sums of.
+/// Amplitudes and frequencies of all modes, with the sizes of the equations' terms there.
 struct Rates {
     z: Vec<C64>,
     omega: Vec<f64>,
-    /// Of each equation present.
+    /// By mode present.
     terms: Vec<Terms>,
 }
 
-/// What the sides of an equation are as large as.
+/// Sizes of the terms of one equation before they cancel.
 struct Terms {
     /// |z_j| Σ |Re (term / z_j)|
     growth: f64,
@@ -43,7 +46,7 @@ struct Terms {
 }
 
 impl Standing<'_> {
-    /// The amplitudes of all modes.
+    /// z of all modes, zero where a mode is absent.
     fn amplitudes(&self, x: &[f64]) -> Vec<C64> {
         let mut z = vec![C64::new(0.0, 0.0); self.system.modes()];
         for (a, &j) in self.present.iter().enumerate() {
@@ -52,17 +55,17 @@ impl Standing<'_> {
         z
     }
 
-    /// Σ_a ν_a w_aj of all modes.
+    /// ω_j = Σ_a ν_a w_aj of all modes.
     fn frequencies(&self, x: &[f64]) -> Vec<f64> {
         let nu = &x[2 * self.present.len()..];
-        let own = |j: usize| nu.iter().zip(self.symmetries).map(|(n, w)| n * w[j]).sum();
-        (0..self.system.modes()).map(own).collect()
+        let omega = |j: usize| nu.iter().zip(self.symmetries).map(|(n, w)| n * w[j]).sum();
+        (0..self.system.modes()).map(omega).collect()
     }
 }
 
 impl System for Standing<'_> {
     type Jacobian = DMatrix<f64>;
-    type Known = Rates;
+    type Byproduct = Rates;
     type Error = Failure;
 
     fn linearise(&mut self, x: &[f64]) -> Result<Option<Linearised<Self>>, Failure> {
@@ -71,6 +74,7 @@ impl System for Standing<'_> {
         let rates = system.rates(&z);
         let mut residual = Vec::with_capacity(2 * m);
         for &j in self.present {
+            // dz_j/dt − i ω_j z_j
             let left = rates[j] - C64::new(0.0, omega[j]) * z[j];
             residual.extend([left.re, left.im]);
         }
@@ -78,8 +82,8 @@ impl System for Standing<'_> {
         let mut jacobian = DMatrix::<f64>::zeros(2 * m, x.len());
         for (a, &i) in self.present.iter().enumerate() {
             for (b, &j) in self.present.iter().enumerate() {
-                let own = slopes[i][j] - C64::new(0.0, if i == j { omega[i] } else { 0.0 });
-                fill(&mut jacobian, (a, b), own, conjugate[i][j]);
+                let slope = slopes[i][j] - C64::new(0.0, if i == j { omega[i] } else { 0.0 });
+                fill(&mut jacobian, (a, b), slope, conjugate[i][j]);
             }
             for (s, symmetry) in self.symmetries.iter().enumerate() {
                 let column = C64::new(0.0, -symmetry[i]) * z[i];
@@ -101,7 +105,7 @@ impl System for Standing<'_> {
         Ok(Some(Linearised {
             residual,
             jacobian,
-            known: Rates { z, omega, terms },
+            byproduct: Rates { z, omega, terms },
         }))
     }
 
@@ -114,7 +118,8 @@ impl System for Standing<'_> {
         self.sizes.contains(&size)
     }
 
-    /// Of least size: phases that are free stay where they are.
+    /// The solution of least size, which leaves free phases where they are. Singular values below 10⁻¹² of the largest are
+    /// free phases.
     fn step(&mut self, _: &[f64], at: &Linearised<Self>) -> Result<Option<Vec<f64>>, Failure> {
         let right = -DVector::from_column_slice(&at.residual);
         if !at
@@ -136,7 +141,7 @@ impl System for Standing<'_> {
     }
 
     fn is_solution(&self, _: &[f64], at: &Linearised<Self>) -> bool {
-        let Rates { z, terms, .. } = &at.known;
+        let Rates { z, terms, .. } = &at.byproduct;
         let residuals = self.present.iter().zip(at.residual.chunks(2)).zip(terms);
         residuals.into_iter().all(|((&j, r), terms)| {
             let residual = C64::new(r[0], r[1]);
@@ -148,7 +153,8 @@ impl System for Standing<'_> {
     }
 }
 
-/// The state from a start, with its frequencies.
+/// The equilibrium that Newton's method reaches from a start, as z and ω of all modes. `None` where it does not converge
+/// to amplitudes between `least` and a thousand times the start, or a mode of `present` fades to zero on the way.
 pub(super) fn newton(
     system: &AmplitudeSystem,
     present: &[usize],
@@ -169,8 +175,9 @@ pub(super) fn newton(
         .collect();
     x.extend(best_frequencies(system, present, symmetries, &start));
     let (_, at) = METHOD.solve(&mut standing, x).ok()?;
-    let Rates { z, omega, terms } = at.known;
+    let Rates { z, omega, terms } = at.byproduct;
     let most = largest(&z);
+    // An amplitude of 10⁻⁵ of the largest is on its way to zero.
     let genuine = |&j: &usize| z[j].norm() > 1e-5 * most;
     let rates = present
         .iter()
@@ -178,8 +185,8 @@ pub(super) fn newton(
         .map(|(&j, terms)| terms.all / z[j].norm());
     let still = STILL * rates.fold(0.0, f64::max);
     let settled = |omega: f64| if omega.abs() <= still { 0.0 } else { omega };
-    let found = present.iter().all(genuine);
-    found.then(|| (z.clone(), omega.into_iter().map(settled).collect()))
+    let all_present = present.iter().all(genuine);
+    all_present.then(|| (z.clone(), omega.into_iter().map(settled).collect()))
 }
 
 /// The ν that come nearest to Im (dz_j/dt / z_j) = Σ_a ν_a w_aj.
@@ -203,7 +210,7 @@ fn best_frequencies(
     }
 }
 
-/// a dz + b dz̄ as a real two by two block.
+/// Writes the map dz → a dz + b dz̄ as a real block of two by two at (2 row, 2 column).
 pub(super) fn fill(matrix: &mut DMatrix<f64>, (row, column): (usize, usize), a: C64, b: C64) {
     let (r, c) = (2 * row, 2 * column);
     matrix[(r, c)] = a.re + b.re;

@@ -8,14 +8,14 @@ use crate::series::Monomial;
 pub struct Term {
     /// z^p z̄^s
     pub monomial: Monomial,
-    /// Its coefficient.
+    /// Its coefficient: g_jα, or c_j for z_j itself.
     pub g: C64,
 }
 
 /// dz_j/dt = Σ over `equations[j]`, linear terms first, by degree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AmplitudeSystem {
-    /// One a mode.
+    /// The terms of dz_j/dt, `[j][term]`.
     pub equations: Vec<Vec<Term>>,
 }
 
@@ -36,19 +36,19 @@ impl AmplitudeSystem {
         self.equations.len()
     }
 
-    /// The coefficient of a monomial in the equation of z_j.
+    /// The coefficient of a monomial in the equation of z_j; `None` where the equation has no such term.
     pub fn coefficient(&self, j: usize, monomial: &Monomial) -> Option<C64> {
         let term = self.equations[j].iter().find(|t| t.monomial == *monomial);
         term.map(|t| t.g)
     }
 
-    /// The highest degree.
+    /// The highest degree of any term.
     pub fn order(&self) -> usize {
         let degrees = self.equations.iter().flatten().map(|t| t.monomial.degree());
         degrees.max().unwrap_or(1)
     }
 
-    /// The terms of some degrees alone.
+    /// The system with the terms of some degrees alone.
     pub fn part(&self, degrees: std::ops::RangeInclusive<usize>) -> Self {
         let kept = |equation: &Vec<Term>| {
             let terms = equation.iter();
@@ -60,21 +60,22 @@ impl AmplitudeSystem {
         }
     }
 
-    /// dz/dt
+    /// dz_j/dt at z, `[j]`.
     pub fn rates(&self, z: &[C64]) -> Vec<C64> {
         let value = |term: &Term| term.g * power(&term.monomial, z);
         let sum = |equation: &Vec<Term>| equation.iter().map(value).sum();
         self.equations.iter().map(sum).collect()
     }
 
-    /// ∂(dz_i/dt)/∂z_j and ∂(dz_i/dt)/∂z̄_j.
+    /// ∂(dz_i/dt)/∂z_j and ∂(dz_i/dt)/∂z̄_j, `[by z or by z̄][i][j]`.
     pub fn slopes(&self, z: &[C64]) -> [Vec<Vec<C64>>; 2] {
         let n = z.len();
         let slope = |equation: &Vec<Term>, factor: &Monomial| -> C64 {
             let terms = equation.iter().filter_map(|term| {
-                let rest = term.monomial.over(factor)?;
+                // d(g z_j^p …)/dz_j = p g z_j^(p−1) …
+                let quotient = term.monomial.over(factor)?;
                 let exponent = term.monomial.exponent_of(factor);
-                Some(term.g * exponent * power(&rest, z))
+                Some(term.g * exponent * power(&quotient, z))
             });
             terms.sum()
         };

@@ -1,4 +1,4 @@
-//! Left and right: the two travelling waves of a mirror-symmetric model, and the standing wave that they make.
+//! The two travelling waves of a mirror-symmetric model, to the left and to the right, and the standing wave of both.
 
 use super::system::AmplitudeSystem;
 use crate::measured::Measured;
@@ -7,12 +7,12 @@ use crate::series::Monomial;
 use serde::Serialize;
 use std::fmt;
 
-/// dR/dt = c0 R + (self |R|² + cross |L|²) R, and its mirror image for L.
+/// Cubic coefficients of dR/dt = c0 R + (self |R|² + cross |L|²) R, and of its mirror image for L.
 #[derive(Clone, Copy, Debug)]
 pub struct Waves {
-    /// Of |R|² R: c2 of the travelling wave.
-    pub own: Measured<C64>,
-    /// Of |L|² R.
+    /// Coefficient of |R|² R: c2 of the travelling wave.
+    pub self_coefficient: Measured<C64>,
+    /// Coefficient of |L|² R.
     pub cross: Measured<C64>,
 }
 
@@ -39,7 +39,7 @@ impl fmt::Display for Stable {
 }
 
 impl Waves {
-    /// Self and cross coefficient in the equation of the first of two waves, `errors` being those of its terms.
+    /// The coefficients in the first equation of a system of two waves. `errors` are the absolute errors of its terms.
     pub fn of(system: &AmplitudeSystem, errors: &[f64]) -> Self {
         let terms = || system.equations[0].iter().zip(errors);
         let coefficient = |z: [u8; 2], conj: [u8; 2]| {
@@ -53,34 +53,35 @@ impl Waves {
             })
         };
         Waves {
-            own: coefficient([2, 0], [1, 0]),
+            self_coefficient: coefficient([2, 0], [1, 0]),
             cross: coefficient([1, 1], [0, 1]),
         }
     }
 
-    /// Re (cross − self): where it is positive, the travelling wave is unstable to the other one.
+    /// Re (cross − self): where it is positive, the travelling wave is unstable to the opposite one.
     fn excess(&self) -> Measured {
-        self.cross.re() - self.own.re()
+        self.cross.re() - self.self_coefficient.re()
     }
 
-    /// Travelling waves exist above onset where Re self < 0, and are stable where besides Re cross < Re self; standing
-    /// ones exist where Re (self + cross) < 0, and are stable where besides Re cross > Re self. Nothing where errors
-    /// leave it undecided.
+    /// Which wave is stable above onset; `None` where errors leave that undecided.
+    ///
+    /// Travelling waves exist above onset where Re self < 0, and are stable where Re cross < Re self besides. Standing
+    /// waves exist where Re (self + cross) < 0, and are stable where Re cross > Re self besides.
     pub fn stable(&self) -> Option<Stable> {
-        let (own, excess) = (self.own.re(), self.excess());
-        let sum = own + self.cross.re();
-        if own.is_negative() && excess.is_negative() {
+        let (travelling, excess) = (self.self_coefficient.re(), self.excess());
+        let standing = travelling + self.cross.re();
+        if travelling.is_negative() && excess.is_negative() {
             Some(Stable::Travelling)
-        } else if sum.is_negative() && excess.is_positive() {
+        } else if standing.is_negative() && excess.is_positive() {
             Some(Stable::Standing)
         } else {
-            let no_travelling = own.is_positive() || excess.is_positive();
-            let no_standing = sum.is_positive() || excess.is_negative();
+            let no_travelling = travelling.is_positive() || excess.is_positive();
+            let no_standing = standing.is_positive() || excess.is_negative();
             (no_travelling && no_standing).then_some(Stable::Neither)
         }
     }
 
-    /// Whether the travelling wave resists the one to the other side; nothing where errors leave it undecided.
+    /// Whether the opposite wave does not grow on the travelling wave; `None` where errors leave that undecided.
     pub fn resists_the_opposite(&self) -> Option<bool> {
         self.excess().sign().map(|sign| sign < 0.0)
     }
@@ -90,10 +91,10 @@ impl Waves {
 mod tests {
     use super::{C64, Measured, Stable, Waves};
 
-    fn waves(own: f64, cross: f64) -> Option<Stable> {
+    fn waves(itself: f64, cross: f64) -> Option<Stable> {
         let measured = |x: f64| Measured::new(C64::new(x, 1.0), 1e-3);
         Waves {
-            own: measured(own),
+            self_coefficient: measured(itself),
             cross: measured(cross),
         }
         .stable()

@@ -95,7 +95,7 @@ pub(super) fn polish(
         pair,
         site,
         envelope,
-    } = found.known;
+    } = found.byproduct;
     Ok(Root {
         x: at[1],
         pair,
@@ -141,7 +141,7 @@ impl Extremum<'_> {
 impl System for Extremum<'_> {
     /// [a_k a_x; a_kk a_kx]
     type Jacobian = [[f64; 2]; 2];
-    type Known = Known;
+    type Byproduct = Known;
     type Error = Failure;
 
     fn linearise(&mut self, at: &[f64]) -> std::result::Result<Option<Linearised<Self>>, Failure> {
@@ -173,7 +173,7 @@ impl System for Extremum<'_> {
         Ok(Some(Linearised {
             residual: vec![here.pair.c.re, slope.re],
             jacobian: [[slope.re, along], [curvature.re, across]],
-            known: here,
+            byproduct: here,
         }))
     }
 

@@ -194,9 +194,9 @@ impl PointReport {
                 answers.values.insert("stable".to_owned(), Value::Null);
             }
             Some(Ok(waves)) => {
-                answers.complex("self", waves.own);
+                answers.complex("self", waves.self_coefficient);
                 answers.complex("cross", waves.cross);
-                let largest = waves.own.error.max(waves.cross.error);
+                let largest = waves.self_coefficient.error.max(waves.cross.error);
                 answers
                     .values
                     .insert("error".to_owned(), words::number(largest));

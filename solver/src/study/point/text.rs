@@ -142,7 +142,7 @@ impl PointReport {
             }
             Some(stable) => format!("{stable} waves are stable"),
         };
-        let [own, cross]: [Measured<C64>; 2] = [waves.own, waves.cross];
+        let [own, cross]: [Measured<C64>; 2] = [waves.self_coefficient, waves.cross];
         write!(
             f,
             "\n  waves: c2 is that of travelling waves; self {own}, cross {cross}: {verdict}"

@@ -218,7 +218,7 @@ impl<'e> Series<'e> {
     fn new(expansion: &'e Expansion) -> Self {
         let problem = expansion.problem.as_ref();
         // One of each pair of conjugates.
-        let known = expansion.known().into_iter();
+        let known = expansion.coefficients().into_iter();
         let modes: Vec<(Monomial, Mode)> = known.filter(|(m, _)| m.z >= m.conj).collect();
         let mut kinds: Vec<Points> = Vec::new();
         let groups = problem.direct.layout.groups().into_iter();
