@@ -171,7 +171,14 @@ pub(super) fn fields(
     fields
 }
 
-pub(super) fn declare(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
+/// Declares every definition that is not a law.
+pub(super) fn definitions(tree: &ModelTree, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
+    for definition in tree.definitions.iter().filter(|d| !d.is_law) {
+        declare(definition, names, mistakes);
+    }
+}
+
+fn declare(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
     keep(names.check_name(&definition.name), mistakes);
     let text = &definition.name.text;
     let taken = names.fields.contains_key(text) || names.parameters.iter().any(|p| &p.name == text);

@@ -1,20 +1,21 @@
-//! Formulas that are read after the model: what somebody printed, in the model's own names.
+//! Formulas that are read after the model: what somebody printed, in the names of the model.
 //!
 //! Beside the names of the spec (fields, laws, parameters, definitions) a formula may use those of
 //! the base state: n0 for n⁰, n0_yy for n⁰_yy, p0_nT for p⁰_nT, k for the wavenumber. A symbol of
-//! that form which the model cannot have, such as kappa0_my, is read as a symbol of its own.
+//! that form which the model cannot have, such as kappa0_my, is read as a symbol that stands for itself.
 
 use super::Model;
 use super::context::Context;
-use super::scope::View;
+use super::scope::{Names, View};
+use super::statement::keep;
 use crate::diagnostic::{Diagnostics, SourceFile};
 use crate::graph::{FieldId, Graph, Id, LawAtom, Node, Table};
 use crate::syntax::parse_formula;
 use crate::syntax::tree::{Expression, ExpressionKind};
 
 impl Model {
-    /// The expression, or left − right of the equation, that `source` holds; `definitions` are
-    /// names that it may use besides.
+    /// Reads the formula that `source` holds into `graph`, the graph of the model: an expression, or left − right of an
+    /// equation. It may also use the names in `definitions`, which stand for nodes of the same graph.
     ///
     /// # Errors
     /// Every mistake of its form.
@@ -38,11 +39,11 @@ impl Model {
             .collect();
         let mut arguments = definitions.to_vec();
         arguments.push(("k".to_owned(), graph.wavenumber()));
-        let mut names = Vec::new();
-        sides
-            .iter()
-            .for_each(|side| collect_names(side, &mut names));
-        for name in names {
+        let mut words = Vec::new();
+        for side in &sides {
+            collect_names(side, &mut words);
+        }
+        for name in words {
             if let Some(id) = self.base_symbol(graph, &name) {
                 arguments.push((name, id));
             }
@@ -52,21 +53,13 @@ impl Model {
             context: Context::State,
             arguments: &arguments,
         };
-        std::mem::swap(graph, &mut self.names.graph);
-        self.names.work_before = self.names.graph.work();
-        let read: Vec<_> = sides
-            .iter()
-            .map(|side| self.names.expression(side, &view))
-            .collect();
-        std::mem::swap(graph, &mut self.names.graph);
-        let mut list = std::mem::take(&mut self.names.further);
-        let mut values = Vec::new();
-        for side in read {
-            match side {
-                Ok(value) => values.push(value),
-                Err(mistake) => list.push(mistake),
-            }
+        let mut names = Names::new(graph, &mut self.declared);
+        let (mut values, mut mistakes) = (Vec::new(), Vec::new());
+        for side in sides {
+            values.extend(keep(names.expression(side, &view), &mut mistakes));
         }
+        let mut list = names.further;
+        list.append(&mut mistakes);
         match values.as_slice() {
             _ if !list.is_empty() => Err(mistaken(list)),
             [left, right] => Ok(graph.sub(*left, *right)),
@@ -103,16 +96,16 @@ impl Model {
     /// Derivatives by each field, and along the coordinate, that subscripts such as `nTy` ask for.
     fn subscripts(&self, marks: &str) -> Option<(Table<FieldId, u8>, u8)> {
         let (mut index, mut y) = (self.fields.map(|_| 0), 0);
-        let mut rest = marks;
-        while !rest.is_empty() {
+        let mut unread = marks;
+        while !unread.is_empty() {
             let fields = self.fields.pairs();
             let longest = fields
-                .filter(|(_, f)| rest.starts_with(f.name.as_str()))
+                .filter(|(_, f)| unread.starts_with(f.name.as_str()))
                 .max_by_key(|(_, f)| f.name.len());
-            rest = match (longest, rest.strip_prefix(self.coordinate())) {
+            unread = match (longest, unread.strip_prefix(self.coordinate())) {
                 (Some((field, f)), _) => {
                     index[field] += 1;
-                    &rest[f.name.len()..]
+                    &unread[f.name.len()..]
                 }
                 (None, Some(after)) => {
                     y += 1;
@@ -145,6 +138,48 @@ fn collect_names(expression: &Expression, names: &mut Vec<String>) {
         }
         ExpressionKind::Select(_, branches) => {
             branches.iter().for_each(|(_, b)| collect_names(b, names));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnostic::SourceFile;
+    use crate::sources::Sources;
+    use std::collections::BTreeMap;
+
+    const TEXT: &str = "model one \"one field\";
+        coordinates { x: periodic; }
+        parameters { r = 1; }
+        fields { u; }
+        let square(a) = a^2;
+        balance { evolution: dt(u) = r*u + dx(dx(u)) - square(u); }
+        base { u = 0; }
+        amplitude { u = 1; }";
+
+    /// Every formula is read with a limit on expansions that counts from zero: a long list of formulas that all use one
+    /// definition is no model that expands without end. What was read is the same node every time.
+    #[test]
+    fn many_formulas() {
+        let sources = Sources {
+            spec: SourceFile {
+                path: "model".into(),
+                text: TEXT.into(),
+            },
+            laws: BTreeMap::new(),
+            unreadable: BTreeMap::new(),
+        };
+        let (mut graph, mut model) = super::super::resolve(&sources).expect("a model");
+        let formula = |text: &str| SourceFile {
+            path: "formula".into(),
+            text: text.into(),
+        };
+        let expected = model
+            .read(&mut graph, &formula("3*u^2"), &[])
+            .expect("a formula");
+        for _ in 0..6000 {
+            let id = model.read(&mut graph, &formula("3*square(u)"), &[]);
+            assert_eq!(id.ok(), Some(expected));
         }
     }
 }

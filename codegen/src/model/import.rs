@@ -4,7 +4,8 @@ use super::Law;
 use super::context::Context;
 use super::mistake::twice;
 use super::scope::{Names, Resolved, Scope};
-use crate::diagnostic::{Diagnostic, nearest};
+use super::statement::keep;
+use crate::diagnostic::{Diagnostic, SourceFile, nearest};
 use crate::graph::{Jet, LawId, Table};
 use crate::sources::Sources;
 use crate::syntax::parse_laws;
@@ -19,28 +20,25 @@ pub(super) struct Imported {
     pub arguments: Option<Vec<Name>>,
 }
 
-/// Reads the files that `imports` name into scopes of their own, and what they import in turn.
+/// Reads the files that `imports` name, each into a scope of its names, and the files that these import in turn.
+/// `scopes` holds the scope of every file read so far, by the name of the file.
 pub(super) fn load_imports(
     imports: &[Import],
     importer: usize,
     sources: &Sources,
     names: &mut Names,
-    known: &mut BTreeMap<String, usize>,
+    scopes: &mut BTreeMap<String, usize>,
     mistakes: &mut Vec<Diagnostic>,
 ) -> Vec<Imported> {
-    let mut found = Vec::new();
+    let mut imported = Vec::new();
     for import in imports {
-        let Some(scope) = load_file(&import.file, sources, names, known, mistakes) else {
+        let Some(scope) = load_file(&import.file, sources, names, scopes, mistakes) else {
             continue;
         };
         for item in &import.items {
-            let Some(definition) = names.scopes[scope].definitions.get(&item.law.text) else {
-                let defined: Vec<&str> = names.scopes[scope]
-                    .definitions
-                    .keys()
-                    .map(String::as_str)
-                    .collect();
-                let near = nearest(&item.law.text, defined);
+            let definitions = &names.scopes[scope].definitions;
+            let Some(definition) = definitions.get(&item.law.text) else {
+                let near = nearest(&item.law.text, definitions.keys().map(String::as_str));
                 let message = format!("`{}` has no law `{}`", import.file.text, item.law.text);
                 let expected = "the name of a law in that file";
                 mistakes.push(
@@ -55,7 +53,7 @@ pub(super) fn load_imports(
                 imports.insert(item.alias.text.clone(), (scope, law.text.clone()));
             }
             let (alias, arguments) = (item.alias.clone(), item.arguments.clone());
-            found.push(Imported {
+            imported.push(Imported {
                 alias,
                 scope,
                 law,
@@ -63,71 +61,67 @@ pub(super) fn load_imports(
             });
         }
     }
-    found
+    imported
 }
 
+/// The scope of a law file, which is read if it has not been; `None` if it cannot be.
 fn load_file(
     name: &Name,
     sources: &Sources,
     names: &mut Names,
-    known: &mut BTreeMap<String, usize>,
+    scopes: &mut BTreeMap<String, usize>,
     mistakes: &mut Vec<Diagnostic>,
 ) -> Option<usize> {
-    if let Some(&scope) = known.get(&name.text) {
+    if let Some(&scope) = scopes.get(&name.text) {
         return Some(scope);
     }
+    let source = keep(law_file(name, sources), mistakes)?;
+    let file = names.files.len();
+    names.files.push(source.clone());
+    let (tree, mut syntax_mistakes) = parse_laws(file, &source.text);
+    let scope = names.scopes.len();
+    names.scopes.push(Scope::default());
+    scopes.insert(name.text.clone(), scope);
+    if !syntax_mistakes.is_empty() {
+        mistakes.append(&mut syntax_mistakes);
+        return None;
+    }
+    let target = &mut names.scopes[scope];
+    for item in tree.parameters {
+        target.parameters.insert(item.name.text.clone(), item);
+    }
+    for definition in tree.definitions {
+        let name = definition.name.clone();
+        let previous = target.definitions.insert(name.text.clone(), definition);
+        if previous.is_some() {
+            mistakes.push(twice(&name));
+        }
+    }
+    load_imports(&tree.imports, scope, sources, names, scopes, mistakes);
+    Some(scope)
+}
+
+/// The text of a law file.
+fn law_file<'s>(name: &Name, sources: &'s Sources) -> Resolved<&'s SourceFile> {
     if let Some(reason) = sources.unreadable.get(&name.text) {
-        mistakes.push(Diagnostic::new(
+        return Err(Diagnostic::new(
             name.location.clone(),
             format!("the law file `{}` cannot be read: {reason}", name.text),
             "a law file of UTF-8 text, at most 1 MiB",
         ));
-        return None;
     }
-    let Some(source) = sources.laws.get(&name.text) else {
+    sources.laws.get(&name.text).ok_or_else(|| {
         let near = nearest(&name.text, sources.laws.keys().map(String::as_str));
         let available: Vec<_> = sources.laws.keys().map(|n| format!("`{n}`")).collect();
-        let expected = match available.len() {
-            0 => "no law files were found beside the models".to_owned(),
-            _ => format!("one of {}", available.join(", ")),
+        let expected = if available.is_empty() {
+            "no law files were found beside the models".to_owned()
+        } else {
+            format!("one of {}", available.join(", "))
         };
-        mistakes.push(
-            Diagnostic::new(
-                name.location.clone(),
-                format!("there is no law file `{}`", name.text),
-                expected,
-            )
-            .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))),
-        );
-        return None;
-    };
-    let file = names.files.len();
-    names.files.push(source.clone());
-    let (tree, found) = parse_laws(file, &source.text);
-    let broken = !found.is_empty();
-    mistakes.extend(found);
-    let scope = names.scopes.len();
-    names.scopes.push(Scope::default());
-    known.insert(name.text.clone(), scope);
-    if broken {
-        return None;
-    }
-    let target = &mut names.scopes[scope];
-    for item in &tree.parameters {
-        target
-            .parameters
-            .insert(item.name.text.clone(), item.clone());
-    }
-    for definition in &tree.definitions {
-        let previous = target
-            .definitions
-            .insert(definition.name.text.clone(), definition.clone());
-        if previous.is_some() {
-            mistakes.push(twice(&definition.name));
-        }
-    }
-    load_imports(&tree.imports, scope, sources, names, known, mistakes);
-    Some(scope)
+        let message = format!("there is no law file `{}`", name.text);
+        Diagnostic::new(name.location.clone(), message, expected)
+            .maybe_hint(near.map(|n| format!("did you mean `{n}`?")))
+    })
 }
 
 /// Binds the imported laws to fields and makes them atoms of the model.

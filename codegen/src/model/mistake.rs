@@ -33,7 +33,7 @@ pub(super) fn beginning() -> Location {
     }
 }
 
-impl Names {
+impl Names<'_> {
     /// A name that the language keeps for itself is none for a user to give.
     pub(super) fn check_name(&self, name: &Name) -> Resolved<()> {
         let word = name.text.as_str();
@@ -108,7 +108,7 @@ impl Names {
             .maybe_hint(hint)
     }
 
-    /// What to write for x, y, z, or a derivative along one of them, where the coordinates have other names.
+    /// What to write for x, y, z, or a derivative along one of them, in a model that names its coordinates otherwise.
     fn coordinate_meant(&self, name: &str) -> Option<String> {
         let coordinate = name.strip_prefix('d').unwrap_or(name);
         if !["x", "y", "z", "r"].contains(&coordinate) {

@@ -55,8 +55,8 @@ pub struct Model {
     pub typical: Option<Typical>,
     /// The text of every file that was read; the spec first.
     pub sources: Vec<crate::diagnostic::SourceFile>,
-    /// What its names stand for, for formulas that are read later; without the graph.
-    names: scope::Names,
+    /// What its names stand for, so that formulas can be read later.
+    declared: scope::Declared,
 }
 
 impl Model {
@@ -269,7 +269,7 @@ pub enum Closure {
         /// Place of its text in the spec.
         location: Location,
     },
-    /// A number with a condition of its own.
+    /// A number that an integral condition determines.
     Unknown {
         /// The number, declared as a field without a profile.
         field: FieldId,

@@ -6,7 +6,7 @@ use crate::graph::{Function, Id};
 use crate::syntax::tree::{Binary, Expression, ExpressionKind};
 use num_traits::ToPrimitive;
 
-impl Names {
+impl Names<'_> {
     /// a ± b ± c …, a * b / c …: from left to right, without a level of recursion for each operand.
     pub(super) fn operations(&mut self, expression: &Expression, view: &View) -> Resolved<Id> {
         let (mut first, mut steps) = (expression, Vec::new());

@@ -1,4 +1,4 @@
-//! Parameters: found by name, declared with default and domain, and constants.
+//! Parameters by name, with default and domain, and the values of constant expressions.
 
 use super::Parameter;
 use super::context::Context;
@@ -11,15 +11,16 @@ use landau_contract::{apply, choose};
 use num_traits::ToPrimitive;
 use std::collections::HashMap;
 
-impl Names {
-    /// A parameter seen from a scope; a law file's own are registered on first use.
+impl Names<'_> {
+    /// The parameter of this name, if `scope` sees it. Parameters of law files become parameters of the model when they
+    /// are first used.
     pub fn find_parameter(&mut self, name: &str, scope: usize) -> Option<ParameterId> {
         if let Some(id) = self.parameters.position(|p| p.name == name) {
             let visible = scope == 0 || self.scopes[scope].parameters.contains_key(name);
             return visible.then_some(id);
         }
         let item = self.scopes[scope].parameters.get(name).cloned()?;
-        let parameter = self.constant_parameter(&item)?;
+        let parameter = self.parameter(&item).ok()?;
         self.used.push(true);
         Some(self.parameters.push(parameter))
     }
@@ -81,14 +82,41 @@ impl Names {
         values.get(&id).copied()
     }
 
-    fn constant_parameter(&mut self, item: &ParameterItem) -> Option<Parameter> {
-        self.parameter(item).ok()
+    /// The parameter that an item declares.
+    pub fn parameter(&mut self, item: &ParameterItem) -> Resolved<Parameter> {
+        let domain = self.domain(&item.domain)?;
+        let default = self.default_of(item, &domain.choices)?;
+        let Domain {
+            lower,
+            upper,
+            choices,
+        } = domain;
+        if !(lower..=upper).contains(&default) {
+            let message = format!("the default {default} lies outside {lower}..{upper}");
+            return Err(Diagnostic::new(
+                item.name.location.clone(),
+                message,
+                format!("a default in {lower}..{upper}"),
+            ));
+        }
+        if let Some(place) = &item.whole {
+            whole_number(place, default, &choices)?;
+        }
+        Ok(Parameter {
+            name: item.name.text.clone(),
+            doc: item.doc.clone(),
+            default,
+            lower,
+            upper,
+            choices,
+            whole: item.whole.is_some(),
+            location: item.name.location.clone(),
+        })
     }
 
-    /// A declared parameter.
-    pub fn parameter(&mut self, item: &ParameterItem) -> Resolved<Parameter> {
+    fn domain(&mut self, domain: &ParameterDomain) -> Resolved<Domain> {
         let (mut lower, mut upper, mut choices) = (f64::NEG_INFINITY, f64::INFINITY, Vec::new());
-        match &item.domain {
+        match domain {
             ParameterDomain::Any => {}
             ParameterDomain::Range(from, to) => {
                 lower = from.as_ref().map_or(Ok(lower), |e| self.constant(e))?;
@@ -101,62 +129,51 @@ impl Names {
                     }
                 }
                 choices = names.iter().map(|n| n.text.clone()).collect();
-                upper = choices.len() as f64 - 1.0;
-                lower = 0.0;
+                (lower, upper) = (0.0, choices.len() as f64 - 1.0);
             }
         }
-        let default = match &item.default {
-            Some(ParameterDefault::Value(value)) => self.constant(value)?,
-            Some(ParameterDefault::Choice(choice)) => {
-                match choices.iter().position(|c| *c == choice.text) {
-                    Some(position) => position as f64,
-                    None => {
-                        let message = format!("`{}` is not one of the choices", choice.text);
-                        let near = nearest(&choice.text, choices.iter().map(String::as_str));
-                        return Err(Diagnostic::new(
-                            choice.location.clone(),
-                            message,
-                            format!("one of {}", choices.join(", ")),
-                        )
-                        .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
-                    }
-                }
-            }
-            None => {
-                let message = format!("the parameter `{}` has no default value", item.name.text);
-                return Err(Diagnostic::new(
-                    item.name.location.clone(),
-                    message,
-                    format!("`{} = value`", item.name.text),
-                ));
-            }
-        };
-        if !(lower..=upper).contains(&default) {
-            let message = format!("the default {default} lies outside {lower}..{upper}");
-            return Err(Diagnostic::new(
-                item.name.location.clone(),
-                message,
-                format!("a default in {lower}..{upper}"),
-            ));
-        }
-        if let Some(place) = &item.whole {
-            whole_number(place, default, &choices)?;
-        }
-        let (name, doc) = (item.name.text.clone(), item.doc.clone());
-        Ok(Parameter {
-            name,
-            doc,
-            default,
+        Ok(Domain {
             lower,
             upper,
             choices,
-            whole: item.whole.is_some(),
-            location: item.name.location.clone(),
         })
+    }
+
+    /// The default value of a number, or the position of the default choice.
+    fn default_of(&mut self, item: &ParameterItem, choices: &[String]) -> Resolved<f64> {
+        match &item.default {
+            Some(ParameterDefault::Value(value)) => self.constant(value),
+            Some(ParameterDefault::Choice(choice)) => {
+                let position = choices.iter().position(|c| *c == choice.text);
+                position.map(|position| position as f64).ok_or_else(|| {
+                    let message = format!("`{}` is not one of the choices", choice.text);
+                    let near = nearest(&choice.text, choices.iter().map(String::as_str));
+                    let expected = format!("one of {}", choices.join(", "));
+                    Diagnostic::new(choice.location.clone(), message, expected)
+                        .maybe_hint(near.map(|n| format!("did you mean `{n}`?")))
+                })
+            }
+            None => {
+                let message = format!("the parameter `{}` has no default value", item.name.text);
+                Err(Diagnostic::new(
+                    item.name.location.clone(),
+                    message,
+                    format!("`{} = value`", item.name.text),
+                ))
+            }
+        }
     }
 }
 
-/// Refuses `whole` beside choices, and a default that is no whole number.
+/// The values that a parameter may take: an interval, or positions in a list of choices.
+struct Domain {
+    lower: f64,
+    upper: f64,
+    /// Empty for a number.
+    choices: Vec<String>,
+}
+
+/// Checks `whole`: it stands beside a number, whose default has no fraction.
 fn whole_number(place: &Location, default: f64, choices: &[String]) -> Resolved<()> {
     let refuse = |message: String, expected: &str| {
         let mistake = Diagnostic::new(place.clone(), message, expected);

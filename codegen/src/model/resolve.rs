@@ -1,7 +1,7 @@
 //! Syntax tree → checked model.
 
 use super::import::load_imports;
-use super::scope::{Names, Scope};
+use super::scope::{Declared, Names, Scope};
 use super::{Model, statement};
 use crate::diagnostic::Diagnostics;
 use crate::graph::Graph;
@@ -11,10 +11,11 @@ use std::collections::BTreeMap;
 
 /// Resolves a spec into a model and the graph of its expressions, or reports every mistake that its form shows.
 pub fn resolve(sources: &Sources) -> Result<(Graph, Model), Diagnostics> {
-    let mut names = Names::new();
-    names.files.push(sources.spec.clone());
+    let (mut graph, mut declared) = (Graph::new(), Declared::new());
+    declared.files.push(sources.spec.clone());
+    declared.scopes.push(Scope::default());
     let (tree, mut mistakes) = parse_model(0, &sources.spec.text);
-    names.scopes.push(Scope::default());
+    let mut names = Names::new(&mut graph, &mut declared);
     let mut law_files = BTreeMap::new();
     let imported = load_imports(
         &tree.imports,
@@ -24,19 +25,16 @@ pub fn resolve(sources: &Sources) -> Result<(Graph, Model), Diagnostics> {
         &mut law_files,
         &mut mistakes,
     );
+    let files = declared.files.clone();
     let model = if mistakes.is_empty() {
-        statement::model(&tree, &imported, &mut names, &mut mistakes)
+        statement::model(&tree, &imported, &mut graph, declared, &mut mistakes)
     } else {
         None
     };
     match model {
-        Some((graph, model)) if mistakes.is_empty() => Ok((graph, model)),
-        Some((_, model)) => Err(Diagnostics {
-            files: model.sources,
-            list: mistakes,
-        }),
-        None => Err(Diagnostics {
-            files: names.files,
+        Some(model) if mistakes.is_empty() => Ok((graph, model)),
+        _ => Err(Diagnostics {
+            files,
             list: mistakes,
         }),
     }

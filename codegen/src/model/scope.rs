@@ -9,6 +9,7 @@ use crate::graph::{
 use crate::syntax::tree::*;
 use num_traits::One;
 use std::collections::BTreeMap;
+use std::ops::{Deref, DerefMut};
 
 /// More expansions than any model needs: definitions that double at every step end here.
 const MOST_EXPANSIONS: usize = 5_000;
@@ -30,27 +31,69 @@ pub(super) struct Scope {
     pub parameters: BTreeMap<String, ParameterItem>,
 }
 
-/// Everything known while a model is being resolved.
-pub(super) struct Names {
-    pub graph: Graph,
+/// What the names of a model stand for. The model keeps it, so that formulas can be read later.
+pub(super) struct Declared {
     pub files: Vec<SourceFile>,
+    /// The names of each file; those of the spec come first.
     pub scopes: Vec<Scope>,
     pub parameters: Table<ParameterId, Parameter>,
     pub fields: BTreeMap<String, FieldId>,
     pub field_count: usize,
     /// Opaque laws of the model by name.
     pub laws: BTreeMap<String, LawId>,
+    /// Whether some expression holds the parameter.
     pub used: Table<ParameterId, bool>,
-    /// Mistakes beside the first of an expression.
-    pub further: Vec<Diagnostic>,
     pub periodic: String,
     pub coordinate: Option<String>,
+    /// Expressions of definitions without arguments, by scope and name: nodes of the model's graph.
+    memo: BTreeMap<(usize, String), Id>,
+}
+
+impl Declared {
+    pub fn new() -> Self {
+        Declared {
+            files: Vec::new(),
+            scopes: Vec::new(),
+            parameters: Table::default(),
+            fields: BTreeMap::new(),
+            field_count: 0,
+            laws: BTreeMap::new(),
+            used: Table::default(),
+            periodic: "x".into(),
+            coordinate: None,
+            memo: BTreeMap::new(),
+        }
+    }
+}
+
+/// The declared names, and the graph that takes the expressions written with them.
+///
+/// Limits of work and of expansions count from where it is made.
+pub(super) struct Names<'a> {
+    pub graph: &'a mut Graph,
+    pub declared: &'a mut Declared,
+    /// Mistakes beside the first of an expression.
+    pub further: Vec<Diagnostic>,
+    /// Definitions that are being expanded, the innermost last.
     expanding: Vec<(usize, String)>,
     expansions: usize,
-    /// Work of the graph that is not the resolver's.
-    pub work_before: usize,
+    /// Work of the graph before anything was read.
+    work_before: usize,
     depth: usize,
-    memo: BTreeMap<(usize, String), Id>,
+}
+
+impl Deref for Names<'_> {
+    type Target = Declared;
+
+    fn deref(&self) -> &Declared {
+        self.declared
+    }
+}
+
+impl DerefMut for Names<'_> {
+    fn deref_mut(&mut self) -> &mut Declared {
+        self.declared
+    }
 }
 
 /// One place from which names are looked up.
@@ -61,31 +104,36 @@ pub(super) struct View<'a> {
     pub arguments: &'a [(String, Id)],
 }
 
-impl Names {
-    pub fn new() -> Self {
+impl<'a> Names<'a> {
+    pub fn new(graph: &'a mut Graph, declared: &'a mut Declared) -> Self {
         Names {
-            graph: Graph::new(),
-            files: Vec::new(),
-            scopes: Vec::new(),
-            parameters: Table::default(),
-            fields: BTreeMap::new(),
-            field_count: 0,
-            laws: BTreeMap::new(),
-            used: Table::default(),
+            work_before: graph.work(),
+            graph,
+            declared,
             further: Vec::new(),
-            periodic: "x".into(),
-            coordinate: None,
             expanding: Vec::new(),
             expansions: 0,
-            work_before: 0,
             depth: 0,
-            memo: BTreeMap::new(),
         }
     }
 
-    /// Forgets what definitions stood for: the graph has been put back.
-    pub fn forget(&mut self) {
-        self.memo.clear();
+    /// Runs `read` on a copy of the graph, which is then dropped with every expression that `read` made.
+    pub fn on_scratch_graph(&mut self, read: impl FnOnce(&mut Names)) {
+        let mut scratch = self.graph.clone();
+        let memo = self.memo.clone();
+        let mut names = Names {
+            graph: &mut scratch,
+            declared: &mut *self.declared,
+            further: Vec::new(),
+            expanding: Vec::new(),
+            expansions: self.expansions,
+            work_before: self.work_before,
+            depth: 0,
+        };
+        read(&mut names);
+        let further = names.further;
+        self.further.extend(further);
+        self.memo = memo;
     }
 
     /// The node of an expression of the model file.
@@ -338,8 +386,9 @@ impl Names {
         if word == "dt" {
             return Some(Operator::Dt);
         }
-        let rest = word.strip_prefix("absd").map(|c| (c, true));
-        let (coordinate, absolute) = rest.or_else(|| word.strip_prefix('d').map(|c| (c, false)))?;
+        let absolute = word.strip_prefix("absd").map(|c| (c, true));
+        let plain = word.strip_prefix('d').map(|c| (c, false));
+        let (coordinate, absolute) = absolute.or(plain)?;
         if coordinate == self.periodic {
             return Some(if absolute {
                 Operator::AbsDx

@@ -4,7 +4,7 @@ use super::context::Context;
 use super::import::{Imported, bind_imports};
 use super::mistake::{beginning, twice};
 use super::place::{end, place_inside};
-use super::scope::{Names, Resolved};
+use super::scope::{Declared, Names, Resolved};
 use super::*;
 use crate::diagnostic::{Diagnostic, nearest};
 use crate::graph::{Graph, Jet, Node, Operator};
@@ -22,28 +22,24 @@ pub(super) fn keep<T>(result: Resolved<T>, mistakes: &mut Vec<Diagnostic>) -> Op
     result.map_err(|mistake| mistakes.push(mistake)).ok()
 }
 
-/// The whole model and the graph of its expressions; `None` where nothing sensible could be made of it.
+/// The model that a spec without mistakes of syntax declares; its expressions go into `graph`. `None` if a mistake
+/// leaves a block without a meaning.
 pub(super) fn model(
     tree: &ModelTree,
     imported: &[Imported],
-    names: &mut Names,
+    graph: &mut Graph,
+    mut declared: Declared,
     mistakes: &mut Vec<Diagnostic>,
-) -> Option<(Graph, Model)> {
+) -> Option<Model> {
     let Some(name) = &tree.name else {
-        let message = "the model has no name";
-        mistakes.push(Diagnostic::new(
-            beginning(),
-            message,
-            "`model name \"title\";`",
-        ));
+        mistakes.push(nameless());
         return None;
     };
+    let names = &mut Names::new(graph, &mut declared);
     declaration::coordinate_names(tree, names, mistakes);
     declaration::parameters(tree, names, mistakes);
     let fields = declaration::fields(tree, names, mistakes);
-    for definition in tree.definitions.iter().filter(|d| !d.is_law) {
-        declaration::declare(definition, names, mistakes);
-    }
+    declaration::definitions(tree, names, mistakes);
     let laws = laws(tree, imported, names, mistakes)?;
     let interval = declaration::interval(tree, names, mistakes);
     each_once(tree.balances.iter().map(|b| &b.name), mistakes);
@@ -51,10 +47,7 @@ pub(super) fn model(
     let balances: Table<BalanceId, Balance> = each(&tree.balances, names, mistakes, balance);
     let ends = interval.as_ref().map(|i| (i.lower, i.upper));
     let base = base(&tree.base, fields.len(), ends, names, mistakes);
-    let mut boundary = Vec::new();
-    for wall in &tree.boundary {
-        wall_conditions(wall, ends, names, mistakes, &mut boundary);
-    }
+    let boundary = walls(&tree.boundary, ends, names, mistakes);
     let mean: Vec<Closure> = each(&tree.mean, names, mistakes, mean);
     let amplitude = match &tree.amplitude {
         Some(item) => {
@@ -70,30 +63,51 @@ pub(super) fn model(
     });
     let typical = tree.typical.as_ref();
     let typical = typical.and_then(|item| keep(typical_of(item, names), mistakes));
-    check_definitions(names, mistakes);
-    mistakes.append(&mut names.further);
-    check_used(names, mistakes);
-    let amplitude = amplitude?;
-    let graph = std::mem::take(&mut names.graph);
-    let model = Model {
+    check_names(names, mistakes);
+    Some(Model {
         name: name.text.clone(),
         title: tree.title.clone(),
-        periodic: names.periodic.clone(),
+        periodic: declared.periodic.clone(),
         interval,
-        parameters: names.parameters.clone(),
+        parameters: declared.parameters.clone(),
         fields,
         laws,
         balances,
         base,
         boundary,
         mean,
-        amplitude,
+        amplitude: amplitude?,
         outputs,
         typical,
-        sources: names.files.clone(),
-        names: std::mem::replace(names, Names::new()),
-    };
-    Some((graph, model))
+        sources: declared.files.clone(),
+        declared,
+    })
+}
+
+/// Checks what is not read with the blocks: definitions, further mistakes of an expression, unused parameters.
+fn check_names(names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
+    check_definitions(names, mistakes);
+    mistakes.append(&mut names.further);
+    check_used(names, mistakes);
+}
+
+fn nameless() -> Diagnostic {
+    let message = "the model has no name";
+    Diagnostic::new(beginning(), message, "`model name \"title\";`")
+}
+
+/// The conditions of all walls, in the order of the spec.
+fn walls(
+    items: &[WallItem],
+    ends: Option<(Id, Id)>,
+    names: &mut Names,
+    mistakes: &mut Vec<Diagnostic>,
+) -> Vec<Condition> {
+    let mut conditions = Vec::new();
+    for wall in items {
+        wall_conditions(wall, ends, names, mistakes, &mut conditions);
+    }
+    conditions
 }
 
 /// What each item of a list means; those with mistakes are left out.
@@ -186,27 +200,26 @@ fn law(definition: &Definition, names: &mut Names, mistakes: &mut Vec<Diagnostic
     })
 }
 
-/// Definitions that no balance uses are read too, so that their mistakes show; on a graph of their own,
-/// so that they leave no trace in the model.
+/// Reads every definition, so that mistakes show in those that no balance uses too. The expressions go into a graph
+/// that is dropped, so that they leave no trace in the model.
 fn check_definitions(names: &mut Names, mistakes: &mut Vec<Diagnostic>) {
     let definitions: Vec<Definition> = names.scopes[0].definitions.values().cloned().collect();
-    let kept = names.graph.clone();
-    for definition in &definitions {
-        // So many mistakes have one cause.
-        if mistakes.len() >= MOST_MISTAKES {
-            break;
+    names.on_scratch_graph(|names| {
+        for definition in &definitions {
+            // So many mistakes have one cause.
+            if mistakes.len() >= MOST_MISTAKES {
+                break;
+            }
+            let count = definition.arguments.as_deref().unwrap_or_default().len();
+            let stand_in = names.graph.jet(Jet::value(FieldId(0)));
+            let place = definition.name.location.clone();
+            let values = vec![stand_in; count];
+            keep(
+                names.expand(0, definition, &values, &place, Context::State),
+                mistakes,
+            );
         }
-        let count = definition.arguments.as_deref().unwrap_or_default().len();
-        let stand_in = names.graph.jet(Jet::value(FieldId(0)));
-        let place = definition.name.location.clone();
-        let values = vec![stand_in; count];
-        keep(
-            names.expand(0, definition, &values, &place, Context::State),
-            mistakes,
-        );
-    }
-    names.graph = kept;
-    names.forget();
+    });
 }
 
 fn difference(equation: &Equation, names: &mut Names) -> Resolved<Id> {
@@ -279,10 +292,7 @@ fn base(
     };
     let closed = profiles(&block.closed, names, mistakes);
     let guesses = profiles(&block.guesses, names, mistakes);
-    let mut conditions = Vec::new();
-    for wall in &block.walls {
-        wall_conditions(wall, ends, names, mistakes, &mut conditions);
-    }
+    let conditions = walls(&block.walls, ends, names, mistakes);
     let integrals = block
         .integrals
         .iter()

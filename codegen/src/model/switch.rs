@@ -1,11 +1,11 @@
-//! Choices by switch parameters.
+//! `select`: expressions that depend on a switch.
 
 use super::scope::{Names, Resolved, View};
 use crate::diagnostic::{Diagnostic, Location, nearest};
 use crate::graph::{Id, ParameterId};
 use crate::syntax::tree::{Expression, Name};
 
-impl Names {
+impl Names<'_> {
     pub(super) fn select(
         &mut self,
         switch: &Name,
@@ -21,7 +21,7 @@ impl Names {
         Ok(self.graph.select(parameter, values))
     }
 
-    /// The switch, and for each of its choices the branch that belongs to it.
+    /// The parameter that a `select` names, and for each of its choices the position of the branch for it.
     pub fn branches<T>(
         &mut self,
         switch: &Name,
@@ -29,61 +29,49 @@ impl Names {
         scope: usize,
         place: &Location,
     ) -> Resolved<(ParameterId, Vec<usize>)> {
-        let parameter = self.find_parameter(&switch.text, scope).ok_or_else(|| {
-            let message = format!("`{}` is not a switch", switch.text);
-            Diagnostic::new(
-                switch.location.clone(),
-                message,
-                "a parameter declared as `name = a in {a, b}`",
-            )
-        })?;
+        let not_a_switch = |message: String| {
+            let expected = "a parameter declared as `name = a in {a, b}`";
+            Diagnostic::new(switch.location.clone(), message, expected)
+        };
+        let parameter = self
+            .find_parameter(&switch.text, scope)
+            .ok_or_else(|| not_a_switch(format!("`{}` is not a switch", switch.text)))?;
         self.used[parameter] = true;
-        let choices = self.parameters[parameter].choices.clone();
+        let choices = &self.parameters[parameter].choices;
         if choices.is_empty() {
             let message = format!("`{}` is a number, not a switch", switch.text);
-            return Err(Diagnostic::new(
-                switch.location.clone(),
-                message,
-                "a parameter declared as `name = a in {a, b}`",
-            ));
+            return Err(not_a_switch(message));
         }
-        for (i, (name, _)) in branches.iter().enumerate() {
-            if !choices.contains(&name.text) {
-                let message = format!("`{}` has no choice `{}`", switch.text, name.text);
-                let near = nearest(&name.text, choices.iter().map(String::as_str));
-                return Err(Diagnostic::new(
-                    name.location.clone(),
-                    message,
-                    format!("one of {}", choices.join(", ")),
-                )
-                .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
-            }
-            if branches[..i]
-                .iter()
-                .any(|(other, _)| other.text == name.text)
-            {
-                let message = format!("the choice `{}` stands twice", name.text);
-                return Err(Diagnostic::new(
-                    name.location.clone(),
-                    message,
-                    "each choice once",
-                ));
-            }
-        }
-        let mut order = Vec::with_capacity(choices.len());
-        for choice in &choices {
-            match branches.iter().position(|(name, _)| &name.text == choice) {
-                Some(branch) => order.push(branch),
-                None => {
-                    let message = format!("the choice `{choice}` of `{}` is missing", switch.text);
-                    return Err(Diagnostic::new(
-                        place.clone(),
-                        message,
-                        format!("a branch for each of {}", choices.join(", ")),
-                    ));
-                }
-            }
-        }
+        let labels: Vec<&Name> = branches.iter().map(|(label, _)| label).collect();
+        check_labels(switch, choices, &labels)?;
+        let branch_of = |choice: &String| {
+            let branch = labels.iter().position(|label| label.text == *choice);
+            branch.ok_or_else(|| {
+                let message = format!("the choice `{choice}` of `{}` is missing", switch.text);
+                let expected = format!("a branch for each of {}", choices.join(", "));
+                Diagnostic::new(place.clone(), message, expected)
+            })
+        };
+        let order = choices.iter().map(branch_of).collect::<Resolved<_>>()?;
         Ok((parameter, order))
     }
+}
+
+/// Checks that every branch is for a choice of the switch, and no two for the same one.
+fn check_labels(switch: &Name, choices: &[String], labels: &[&Name]) -> Resolved<()> {
+    for (position, label) in labels.iter().enumerate() {
+        if !choices.contains(&label.text) {
+            let message = format!("`{}` has no choice `{}`", switch.text, label.text);
+            let near = nearest(&label.text, choices.iter().map(String::as_str));
+            let expected = format!("one of {}", choices.join(", "));
+            return Err(Diagnostic::new(label.location.clone(), message, expected)
+                .maybe_hint(near.map(|n| format!("did you mean `{n}`?"))));
+        }
+        if labels[..position].iter().any(|l| l.text == label.text) {
+            let message = format!("the choice `{}` stands twice", label.text);
+            let place = label.location.clone();
+            return Err(Diagnostic::new(place, message, "each choice once"));
+        }
+    }
+    Ok(())
 }
