@@ -41,7 +41,7 @@ impl Graph {
             }
             // 1/0 has no derivative either.
             Node::Product(_) if self.is_pole(id) => id,
-            // (Π b^e)' = Σ e b^(e−1) b' Π others
+            // (Π b_i^e_i)' = Σ_i e_i b_i^(e_i−1) b_i' Π_{j≠i} b_j^e_j
             Node::Product(factors) => {
                 let mut parts = Vec::new();
                 for (i, (base, exponent)) in factors.iter().enumerate() {
@@ -116,6 +116,10 @@ impl Graph {
             (Node::BaseLaw(atom), Variable::Base(_, order)) => {
                 assert!(order > atom.y, "internal error: a law is not opened");
                 self.zero()
+            }
+            // A law of the full state hides how it depends on the base state.
+            (Node::StateLaw(_), Variable::Base(..) | Variable::AlongBase) => {
+                panic!("internal error: a law is not opened")
             }
             _ => self.zero(),
         }
@@ -290,6 +294,20 @@ mod tests {
             y: 0,
         };
         let law = graph.base_law(law);
+        graph.differentiate(law, Variable::Base(FieldId(0), 0));
+    }
+
+    /// The same of a law at the full state, whose derivative along the base state is hidden too.
+    #[test]
+    #[should_panic(expected = "a law is not opened")]
+    fn laws_of_the_full_state_have_to_be_opened() {
+        let mut graph = Graph::new();
+        let law = LawAtom {
+            law: LawId(0),
+            index: Table::filled(1, 0),
+            y: 0,
+        };
+        let law = graph.state_law(law);
         graph.differentiate(law, Variable::Base(FieldId(0), 0));
     }
 
