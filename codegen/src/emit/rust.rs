@@ -20,14 +20,13 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
     let forms = forms(derivation, model);
     let residuals = residuals(model);
     let functions = [&kernels, &forms, &residuals].map(|part| &part.functions);
-    let [kernel_arms, form_arms, residual_arms] =
-        [&kernels, &forms, &residuals].map(|part| &part.arms);
+    let texts = texts();
+    let evaluation = evaluation(&kernels, &forms, &residuals);
     let undeclared = undeclared(&model.undeclared);
     let sources = derivation.model.sources.iter().map(|file| {
         let (path, text) = (&file.path, &file.text);
         quote!((#path, #text))
     });
-    let build = crate::BUILD;
     let generated = generated();
     let code = quote! {
         use landau_contract as s;
@@ -37,40 +36,8 @@ pub fn module(derivation: &Derivation, model: &ModelKernels) -> String {
         #generated
 
         impl s::Model for Generated {
-            fn structure(&self) -> &s::Structure {
-                &self.structure
-            }
-
-            fn sources(&self) -> Vec<(String, String)> {
-                SOURCES.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect()
-            }
-
-            fn laws(&self) -> Vec<(String, String)> {
-                super::LAWS.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect()
-            }
-
-            fn generator(&self) -> &str {
-                #build
-            }
-
-            fn evaluate(&self, kernel: s::KernelId, point: &[f64], out: &mut [f64]) {
-                match kernel {
-                    #kernel_arms
-                    absent => panic!("this model has no kernel {absent:?}"),
-                }
-            }
-
-            fn form(&self, degree: usize, row: s::BalanceId, c: &[f64], x: &[&[C64]]) -> C64 {
-                #form_arms
-            }
-
-            fn residual(&self, residual: s::ResidualId) -> Option<&s::Kernel> {
-                match residual {
-                    #residual_arms
-                    _ => None,
-                }
-            }
-
+            #texts
+            #evaluation
             #undeclared
         }
 
@@ -109,6 +76,52 @@ fn generated() -> TokenStream {
     }
 }
 
+/// The methods that say what the module was made from.
+fn texts() -> TokenStream {
+    let build = crate::BUILD;
+    quote! {
+        fn structure(&self) -> &s::Structure {
+            &self.structure
+        }
+
+        fn sources(&self) -> Vec<(String, String)> {
+            SOURCES.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect()
+        }
+
+        fn laws(&self) -> Vec<(String, String)> {
+            super::LAWS.iter().map(|(path, text)| (path.to_string(), text.to_string())).collect()
+        }
+
+        fn generator(&self) -> &str {
+            #build
+        }
+    }
+}
+
+/// The methods that pick a kernel, a nonlinear form or a residual.
+fn evaluation(kernels: &Dispatch, forms: &Dispatch, residuals: &Dispatch) -> TokenStream {
+    let [kernels, forms, residuals] = [kernels, forms, residuals].map(|part| &part.arms);
+    quote! {
+        fn evaluate(&self, kernel: s::KernelId, point: &[f64], out: &mut [f64]) {
+            match kernel {
+                #kernels
+                absent => panic!("this model has no kernel {absent:?}"),
+            }
+        }
+
+        fn form(&self, degree: usize, row: s::BalanceId, c: &[f64], x: &[&[C64]]) -> C64 {
+            #forms
+        }
+
+        fn residual(&self, residual: s::ResidualId) -> Option<&s::Kernel> {
+            match residual {
+                #residuals
+                _ => None,
+            }
+        }
+    }
+}
+
 /// Functions or constants, and the arms of the `match` that picks one of them.
 struct Dispatch {
     functions: TokenStream,
@@ -127,7 +140,7 @@ fn kernels(derivation: &Derivation, model: &ModelKernels) -> Dispatch {
     Dispatch { functions, arms }
 }
 
-/// N2, N3, … of each balance. A balance without terms of a degree is zero by an arm of its own.
+/// N2, N3, … of each balance. A balance without terms of a degree has an arm that returns zero.
 fn forms(derivation: &Derivation, model: &ModelKernels) -> Dispatch {
     let (mut functions, mut arms) = (TokenStream::new(), TokenStream::new());
     let mut identifiers = Identifiers::default();
@@ -302,7 +315,8 @@ fn form_function(
     }
 }
 
-/// A program over the point state and the jets of the full state, as data: the solver runs it on numbers of its own.
+/// A program over the point state and the jets of the full state, as data: the solver runs it on every type of number
+/// that it has.
 fn residual_program(name: &Ident, kernel: &Kernel) -> TokenStream {
     let doc = counts(kernel);
     let kernel = kernel.literal();
@@ -356,8 +370,8 @@ fn outputs(kernel: &Kernel, comments: &Comments) -> TokenStream {
     tokens
 }
 
-/// Real registers are `f64`; the others are of the kernel's number type, and mixed operations keep
-/// the number type on the left.
+/// The statements of a kernel, one register each. Real registers are `f64`; all further ones are of the kernel's number
+/// type.
 fn body(kernel: &Kernel, comments: &Comments) -> TokenStream {
     let mut tokens = TokenStream::new();
     let real = kernel.real();
@@ -372,8 +386,6 @@ fn body(kernel: &Kernel, comments: &Comments) -> TokenStream {
 }
 
 fn expression(kernel: &Kernel, real: &[bool], operation: &Operation) -> TokenStream {
-    let real = |r: usize| real[r];
-    let mixed = |a: usize, b: usize| real(a) && !real(b);
     match operation {
         Operation::Constant(value) => value.literal(),
         Operation::Input(array, position) => {
@@ -381,32 +393,10 @@ fn expression(kernel: &Kernel, real: &[bool], operation: &Operation) -> TokenStr
             let position = proc_macro2::Literal::usize_unsuffixed(*position);
             quote!(#name[#position])
         }
-        Operation::Add(a, b) => {
-            let (x, y) = if mixed(*a, *b) { (b, a) } else { (a, b) };
-            let (x, y) = (register(*x), register(*y));
-            quote!(#x + #y)
-        }
-        Operation::Subtract(a, b) => {
-            let (x, y) = (register(*a), register(*b));
-            if mixed(*a, *b) {
-                quote!(-#y + #x)
-            } else {
-                quote!(#x - #y)
-            }
-        }
-        Operation::Multiply(a, b) => {
-            let (x, y) = if mixed(*a, *b) { (b, a) } else { (a, b) };
-            let (x, y) = (register(*x), register(*y));
-            quote!(#x * #y)
-        }
-        Operation::Divide(a, b) => {
-            let (x, y) = (register(*a), register(*b));
-            if mixed(*a, *b) {
-                quote!(s::Number::recip(#y) * #x)
-            } else {
-                quote!(#x / #y)
-            }
-        }
+        Operation::Add(..)
+        | Operation::Subtract(..)
+        | Operation::Multiply(..)
+        | Operation::Divide(..) => arithmetic(real, operation),
         Operation::Negate(a) => {
             let x = register(*a);
             quote!(-#x)
@@ -416,10 +406,8 @@ fn expression(kernel: &Kernel, real: &[bool], operation: &Operation) -> TokenStr
             quote!(s::Number::sqrt(#x))
         }
         Operation::PowerI(a, exponent) => {
-            let (x, exponent) = (
-                register(*a),
-                proc_macro2::Literal::i32_unsuffixed(*exponent),
-            );
+            let x = register(*a);
+            let exponent = proc_macro2::Literal::i32_unsuffixed(*exponent);
             quote!(s::Number::powi(#x, #exponent))
         }
         Operation::PowerF(a, exponent) => {
@@ -435,5 +423,29 @@ fn expression(kernel: &Kernel, real: &[bool], operation: &Operation) -> TokenStr
             let branches = branches.iter().map(|&b| register(b));
             quote!(s::choose(#switch, &[#(#branches),*]))
         }
+    }
+}
+
+/// An operation between two registers. A number type has operations with an `f64` on the right alone, so a real left
+/// register changes sides.
+fn arithmetic(real: &[bool], operation: &Operation) -> TokenStream {
+    let (Operation::Add(a, b)
+    | Operation::Subtract(a, b)
+    | Operation::Multiply(a, b)
+    | Operation::Divide(a, b)) = operation
+    else {
+        unreachable!("internal error: not an operation between two registers");
+    };
+    let changes_sides = real[*a] && !real[*b];
+    let (x, y) = (register(*a), register(*b));
+    match (operation, changes_sides) {
+        (Operation::Add(..), false) => quote!(#x + #y),
+        (Operation::Add(..), true) => quote!(#y + #x),
+        (Operation::Subtract(..), false) => quote!(#x - #y),
+        (Operation::Subtract(..), true) => quote!(-#y + #x),
+        (Operation::Multiply(..), false) => quote!(#x * #y),
+        (Operation::Multiply(..), true) => quote!(#y * #x),
+        (_, false) => quote!(#x / #y),
+        (_, true) => quote!(s::Number::recip(#y) * #x),
     }
 }

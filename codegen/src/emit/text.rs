@@ -152,7 +152,7 @@ impl<'a> Writer<'a> {
             .scaled(&self.derivation.graph, coefficient, what)
     }
 
-    /// y = H, by the end's own name where it has one.
+    /// y = H, by the name of the end if it has one.
     fn place(&self, end: End) -> Formula {
         let model = &self.derivation.model;
         let Some(interval) = &model.interval else {

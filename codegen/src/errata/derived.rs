@@ -1,14 +1,13 @@
-//! What was derived, as one expression a subject.
+//! The derived side of a comparison: for every subject, one expression.
 
 use super::{Formula, Subject};
 use crate::derive::{Case, Derivation};
 use crate::diagnostic::{Diagnostic, Diagnostics, Location, SourceFile, nearest};
 use crate::form::Form;
 use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, ParameterId, Rational, Table};
+use crate::model::End;
 use landau_contract::Id as Position;
 use num_traits::One;
-
-type Found<T> = Result<T, Diagnostics>;
 
 /// The values of parameters, and the branches of switches, that a formula is read for.
 pub(super) type Setting = Vec<(ParameterId, Value)>;
@@ -19,102 +18,163 @@ pub(super) enum Value {
     Choice(usize),
 }
 
-/// The derived side of a formula.
+/// The derived side of a formula, as a node of the derivation's graph.
 pub(super) fn subject(
     derivation: &mut Derivation,
     formula: &Formula,
     setting: &Setting,
-) -> Found<Id> {
-    let model = &derivation.model;
-    let balances = model.balances.map(|b| b.name.clone());
-    let laws = model.laws.map(|l| l.name.clone());
-    let fields = model.field_names();
-    let balance = |name: &str| named(formula, "balance", name, &balances);
-    let field = |name: &str| named(formula, "field", name, &fields);
-    let paired = |name: &str| {
-        let field = field(name)?;
-        let row = derivation.operators.pairing.position(|&f| f == field);
-        row.ok_or_else(|| absent(formula, "balance paired with", name, &fields))
+) -> Result<Id, Diagnostics> {
+    let lookup = Lookup {
+        derivation,
+        formula,
+        setting,
     };
-    let operators = &derivation.operators;
     let form = match &formula.subject {
-        Subject::Balance(name) => return Ok(model.balances[balance(name)?].residual),
-        Subject::Law(name) => return Ok(model.laws[named(formula, "law", name, &laws)?].body),
-        Subject::Base(name) => {
-            let balance = balance(name)?;
-            let row = operators.base.iter().find(|row| row.balance == balance);
-            let row = row.ok_or_else(|| absent(formula, "base-state balance", name, &[]))?;
-            return Ok(row.residual);
-        }
-        Subject::Linear(row, column) => {
-            let (row, column) = (balance(row)?, field(column)?);
-            let terms = operators.linear.iter().filter(|t| t.row == row);
-            let terms = terms.filter(|t| t.jet.of == column && t.jet.t == 0);
-            terms.map(|t| (vec![t.jet], t.coefficient)).collect()
-        }
-        Subject::Adjoint(row, column) => {
-            let (row, column) = (field(row)?, paired(column)?);
-            let terms = operators.adjoint.iter().filter(|t| t.row == row);
-            let terms = terms.filter(|t| t.jet.of == column && t.jet.t == 0);
-            let in_fields = |jet| in_fields(&operators.pairing, jet);
-            terms
-                .map(|t| (vec![in_fields(t.jet)], t.coefficient))
-                .collect()
-        }
-        Subject::Nonlinear(degree, row) => {
-            let row = balance(row)?;
-            let degrees = 2..=operators.order;
-            if !degrees.contains(degree) {
-                return Err(absent(
-                    formula,
-                    "operator of degree",
-                    &degree.to_string(),
-                    &[],
-                ));
-            }
-            operators.nonlinear[degree - 2][row].terms.clone()
-        }
-        Subject::Condition(end, name) => {
-            let (case, field) = (case(derivation, formula, setting)?, field(name)?);
-            let mut all = case.conditions.iter();
-            let found = all.find(|c| c.end == *end && c.about() == Some(field));
-            let found =
-                found.ok_or_else(|| absent(formula, "condition at this end on", name, &[]))?;
-            found.form.terms.clone()
-        }
-        Subject::AdjointCondition(end, name) => {
-            let (case, row) = (case(derivation, formula, setting)?, paired(name)?);
-            let all = case.adjoint.as_deref().unwrap_or_default();
-            let mut all = all.iter();
-            let found = all.find(|c| c.end == *end && c.balance == row);
-            let found = found
-                .ok_or_else(|| absent(formula, "adjoint condition at this end on", name, &[]))?;
-            let mut form = Form::default();
-            for (jet, symbol) in &found.combination {
-                for (&(x, absx), &coefficient) in symbol {
-                    let jet = in_fields(&operators.pairing, Jet { x, absx, ..*jet });
-                    form.terms.insert(vec![jet], coefficient);
-                }
-            }
-            form.terms
-        }
+        Subject::Balance(name) => return lookup.balance_residual(name),
+        Subject::Law(name) => return lookup.law(name),
+        Subject::Base(name) => return lookup.base_residual(name),
+        Subject::Linear(balance, field) => lookup.linear(balance, field)?,
+        Subject::Adjoint(row, column) => lookup.adjoint(row, column)?,
+        Subject::Nonlinear(degree, balance) => lookup.nonlinear(*degree, balance)?,
+        Subject::Condition(end, field) => lookup.condition(*end, field)?,
+        Subject::AdjointCondition(end, field) => lookup.adjoint_condition(*end, field)?,
     };
-    let form = Form { terms: form };
     Ok(expression(&mut derivation.graph, &form))
 }
 
-/// An adjoint jet is of a balance; here it is named by the field that its balance goes with.
-fn in_fields(pairing: &Table<BalanceId, FieldId>, jet: Jet<BalanceId>) -> Jet {
-    jet.about(pairing[jet.of])
+/// Finds what a formula is about among everything that was derived.
+struct Lookup<'a> {
+    derivation: &'a Derivation,
+    formula: &'a Formula,
+    setting: &'a Setting,
 }
 
-/// Something of the model by name.
+impl Lookup<'_> {
+    fn balance_residual(&self, name: &str) -> Result<Id, Diagnostics> {
+        Ok(self.derivation.model.balances[self.balance(name)?].residual)
+    }
+
+    fn law(&self, name: &str) -> Result<Id, Diagnostics> {
+        let laws = &self.derivation.model.laws;
+        let law = named(self.formula, "law", name, &laws.map(|l| l.name.clone()))?;
+        Ok(laws[law].body)
+    }
+
+    fn base_residual(&self, name: &str) -> Result<Id, Diagnostics> {
+        let balance = self.balance(name)?;
+        let rows = &self.derivation.operators.base;
+        let row = rows.iter().find(|row| row.balance == balance);
+        row.map(|row| row.residual)
+            .ok_or_else(|| absent(self.formula, "base-state balance", name, &[]))
+    }
+
+    /// L of a balance, acting on a field.
+    fn linear(&self, balance: &str, field: &str) -> Result<Form, Diagnostics> {
+        let (balance, field) = (self.balance(balance)?, self.field(field)?);
+        let linear = self.derivation.operators.linear.iter();
+        let entry = linear.filter(|t| t.row == balance && t.jet.of == field && t.jet.t == 0);
+        let terms = entry.map(|t| (vec![t.jet], t.coefficient)).collect();
+        Ok(Form { terms })
+    }
+
+    /// L† in the row of a field, acting on the adjoint of the field `column`.
+    fn adjoint(&self, row: &str, column: &str) -> Result<Form, Diagnostics> {
+        let (row, column) = (self.field(row)?, self.paired_balance(column)?);
+        let adjoint = self.derivation.operators.adjoint.iter();
+        let entry = adjoint.filter(|t| t.row == row && t.jet.of == column && t.jet.t == 0);
+        let terms = entry
+            .map(|t| (vec![self.in_fields(t.jet)], t.coefficient))
+            .collect();
+        Ok(Form { terms })
+    }
+
+    /// N of a degree in a balance.
+    fn nonlinear(&self, degree: usize, balance: &str) -> Result<Form, Diagnostics> {
+        let balance = self.balance(balance)?;
+        let operators = &self.derivation.operators;
+        if !(2..=operators.order).contains(&degree) {
+            let degree = degree.to_string();
+            return Err(absent(self.formula, "operator of degree", &degree, &[]));
+        }
+        Ok(operators.nonlinear[degree - 2][balance].clone())
+    }
+
+    fn condition(&self, end: End, name: &str) -> Result<Form, Diagnostics> {
+        let (case, field) = (self.case()?, self.field(name)?);
+        let mut conditions = case.conditions.iter();
+        let condition = conditions.find(|c| c.end == end && c.about() == Some(field));
+        condition
+            .map(|condition| condition.form.clone())
+            .ok_or_else(|| absent(self.formula, "condition at this end on", name, &[]))
+    }
+
+    fn adjoint_condition(&self, end: End, name: &str) -> Result<Form, Diagnostics> {
+        let (case, row) = (self.case()?, self.paired_balance(name)?);
+        let mut conditions = case.adjoint.as_deref().unwrap_or_default().iter();
+        let condition = conditions.find(|c| c.end == end && c.balance == row);
+        let condition = condition
+            .ok_or_else(|| absent(self.formula, "adjoint condition at this end on", name, &[]))?;
+        let mut form = Form::default();
+        for (jet, symbol) in &condition.combination {
+            for (&(x, absx), &coefficient) in symbol {
+                let jet = self.in_fields(Jet { x, absx, ..*jet });
+                form.terms.insert(vec![jet], coefficient);
+            }
+        }
+        Ok(form)
+    }
+
+    fn balance(&self, name: &str) -> Result<BalanceId, Diagnostics> {
+        let names = self.derivation.model.balances.map(|b| b.name.clone());
+        named(self.formula, "balance", name, &names)
+    }
+
+    fn field(&self, name: &str) -> Result<FieldId, Diagnostics> {
+        let names = self.derivation.model.field_names();
+        named(self.formula, "field", name, &names)
+    }
+
+    /// The balance whose adjoint field goes with the field of this name.
+    fn paired_balance(&self, name: &str) -> Result<BalanceId, Diagnostics> {
+        let field = self.field(name)?;
+        let pairing = &self.derivation.operators.pairing;
+        pairing.position(|&f| f == field).ok_or_else(|| {
+            let names = self.derivation.model.field_names();
+            absent(self.formula, "balance paired with", name, &names)
+        })
+    }
+
+    /// An adjoint jet belongs to a balance; formulas name it by the field that the balance is paired with.
+    fn in_fields(&self, jet: Jet<BalanceId>) -> Jet {
+        jet.about(self.derivation.operators.pairing[jet.of])
+    }
+
+    /// The case of the switches that the formula is set in. A switch that it does not set keeps its default choice.
+    fn case(&self) -> Result<&Case, Diagnostics> {
+        let operators = &self.derivation.operators;
+        let chosen = |&switch: &ParameterId| {
+            let choice = self
+                .setting
+                .iter()
+                .find_map(|(parameter, value)| match value {
+                    Value::Choice(choice) if *parameter == switch => Some(*choice),
+                    _ => None,
+                });
+            choice.unwrap_or(self.derivation.model.parameters[switch].default as usize)
+        };
+        let choices: Vec<usize> = operators.switches.iter().map(chosen).collect();
+        let case = operators.cases.iter().find(|c| c.choices == choices);
+        case.ok_or_else(|| absent(self.formula, "case of", "these switches", &[]))
+    }
+}
+
+/// The position of a name in a list of the model.
 fn named<I: Position>(
     formula: &Formula,
     what: &str,
     name: &str,
     names: &Table<I, String>,
-) -> Found<I> {
+) -> Result<I, Diagnostics> {
     let position = names.position(|n| n == name);
     position.ok_or_else(|| absent(formula, what, name, names))
 }
@@ -134,23 +194,11 @@ fn expression(graph: &mut Graph, form: &Form) -> Id {
     graph.sum(parts)
 }
 
-/// The case of the switches that the formula is set in: the default choices where it says nothing.
-fn case<'d>(derivation: &'d Derivation, formula: &Formula, setting: &Setting) -> Found<&'d Case> {
-    let operators = &derivation.operators;
-    let chosen = |switch: ParameterId| {
-        let set = setting.iter().find_map(|(parameter, value)| match value {
-            Value::Choice(choice) if *parameter == switch => Some(*choice),
-            _ => None,
-        });
-        set.unwrap_or(derivation.model.parameters[switch].default as usize)
-    };
-    let wanted: Vec<usize> = operators.switches.iter().map(|&s| chosen(s)).collect();
-    let case = operators.cases.iter().find(|c| c.choices == wanted);
-    case.ok_or_else(|| absent(formula, "case of", "these switches", &[]))
-}
-
-/// The parameters that a formula is set in.
-pub(super) fn setting(derivation: &mut Derivation, formula: &Formula) -> Found<Setting> {
+/// The parameters that a formula sets, with their values.
+pub(super) fn setting(
+    derivation: &mut Derivation,
+    formula: &Formula,
+) -> Result<Setting, Diagnostics> {
     let names = derivation.model.parameters.map(|p| p.name.clone());
     let mut setting = Setting::new();
     for (name, text) in &formula.setting {
@@ -182,7 +230,7 @@ fn number(derivation: &mut Derivation, text: &str) -> Option<Rational> {
     derivation.graph.as_number(id).cloned()
 }
 
-/// A subject that the model does not have.
+/// The mistake of a formula about something that the model does not have.
 fn absent(formula: &Formula, what: &str, name: &str, candidates: &[String]) -> Diagnostics {
     let place = Location {
         file: 0,

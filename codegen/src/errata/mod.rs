@@ -232,8 +232,8 @@ fn printed(
         .read(&mut derivation.graph, source, &definitions)
 }
 
-/// What the printed side has to be multiplied with: the coefficients of the leading term that both
-/// have, one over the other.
+/// The factor between the derived and the printed side of an equation: the ratio of the coefficients of the leading term
+/// that both sides have.
 fn relative_factor(graph: &mut Graph, printed: &Form, derived: &Form) -> Id {
     let key = |monomial: &&Monomial| {
         let derivatives = monomial.iter().map(|j| (j.y, j.t, j.x)).max();
@@ -291,8 +291,8 @@ fn differences(
         terms += 1;
         let opened = |side: Option<(Id, Id)>| side.map_or(zero, |(_, opened)| opened);
         let graph = &mut derivation.graph;
-        let rest = graph.sub(opened(left), opened(right));
-        if !graph.vanishes(rest) {
+        let difference = graph.sub(opened(left), opened(right));
+        if !graph.vanishes(difference) {
             let mut shown =
                 |side: Option<(Id, Id)>| side.map(|(written, _)| graph.collect(written));
             differences.push(Difference {

@@ -33,8 +33,8 @@ pub(super) fn open_law(derivation: &mut Derivation, id: Id) -> Id {
     Opener::new(&model.laws, &model.base.closed, &uniform).at_state(&mut derivation.graph, id)
 }
 
-/// Derivatives carried out, base values that are known put in, laws that do not depend on a field
-/// not differentiated by it.
+/// Carries out derivatives, puts in the base fields that have a closed form, and drops the derivatives of laws by
+/// fields that they do not depend on.
 pub(super) fn carry_out(derivation: &mut Derivation, id: Id) -> Id {
     let model = &derivation.model;
     let (laws, closed) = (&model.laws, &model.base.closed);
@@ -59,7 +59,7 @@ fn foreign(atom: &LawAtom, depends: &Dependence) -> bool {
     index.any(|(&order, depends)| order > 0 && !depends)
 }
 
-/// Laws that depend on the coordinate other than through the fields.
+/// Which laws hold the coordinate itself, beside the fields.
 fn explicit(graph: &Graph, laws: &Table<LawId, Law>) -> Table<LawId, bool> {
     let mut table: Table<LawId, bool> = Table::default();
     for law in laws {

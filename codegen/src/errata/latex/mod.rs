@@ -1,8 +1,8 @@
 //! A formula in LaTeX, as a source prints it, in the language of the spec.
 //!
 //! The reader knows what papers write: ∂n'²/∂y, n'_y, p⁰_nT, (u'·∇)v', ∇·u', operators that act on what
-//! follows and, in an operator's own entry, on the field that is not written. It mends nothing: what
-//! is not closed stays open and is counted.
+//! follows and, where a formula prints an entry of L, on the field that is not written. It mends nothing: brackets
+//! that are not closed stay open and are counted.
 
 mod operator;
 mod symbol;
@@ -137,9 +137,9 @@ impl<'a> Reader<'a> {
     }
 
     fn take(&mut self, kind: &Kind) -> bool {
-        let found = self.kind() == Some(kind);
-        self.position += usize::from(found);
-        found
+        let is_next = self.kind() == Some(kind);
+        self.position += usize::from(is_next);
+        is_next
     }
 
     fn sign(&mut self, sign: char) -> bool {
@@ -147,9 +147,9 @@ impl<'a> Reader<'a> {
     }
 
     fn command(&mut self, name: &str) -> bool {
-        let found = matches!(self.kind(), Some(Kind::Command(known)) if known == name);
-        self.position += usize::from(found);
-        found
+        let is_next = matches!(self.kind(), Some(Kind::Command(command)) if command == name);
+        self.position += usize::from(is_next);
+        is_next
     }
 
     fn unreadable(&self, message: &str, range: Range<usize>) -> Unreadable {

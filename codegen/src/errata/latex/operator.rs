@@ -99,10 +99,10 @@ impl Reader<'_> {
             let (above, below) = (self.within(above)?, self.within(below)?);
             return Ok(Value::Plain(format!("({above})/({below})")));
         };
-        let Some(rest) = differential(above) else {
+        let Some(operand) = differential(above) else {
             return Err(self.unreadable("∂ stands below and not above", range));
         };
-        let (order, rest) = match rest {
+        let (order, operand) = match operand {
             [
                 Token {
                     kind: Kind::Sign('^'),
@@ -112,32 +112,32 @@ impl Reader<'_> {
                     kind: Kind::Number(order),
                     ..
                 },
-                rest @ ..,
-            ] => (order.parse().unwrap_or(0), rest),
-            rest => (1, rest),
+                operand @ ..,
+            ] => (order.parse().unwrap_or(0), operand),
+            operand => (1, operand),
         };
         if order != coordinates.len() {
             return Err(self.unreadable("the orders above and below differ", range));
         }
         let operator = Operator::Derivative(coordinates);
-        if rest.is_empty() {
+        if operand.is_empty() {
             return Ok(Value::Acting(operator));
         }
-        let inside = self.within(rest)?;
+        let inside = self.within(operand)?;
         Ok(Value::Plain(operator.on(&inside)))
     }
 
     /// ∂x², ∂x∂y, dy: the coordinates of a derivative, as often as they stand there.
     fn coordinates(&self, tokens: &[Token]) -> Option<Vec<String>> {
-        let (mut rest, mut coordinates) = (tokens, Vec::new());
-        while !rest.is_empty() {
+        let (mut denominator, mut coordinates) = (tokens, Vec::new());
+        while !denominator.is_empty() {
             let [
                 Token {
                     kind: Kind::Letter(letter),
                     ..
                 },
                 after @ ..,
-            ] = differential(rest)?
+            ] = differential(denominator)?
             else {
                 return None;
             };
@@ -160,7 +160,7 @@ impl Reader<'_> {
                 after => (1, after),
             };
             coordinates.extend(vec![name; times]);
-            rest = after;
+            denominator = after;
         }
         (!coordinates.is_empty()).then_some(coordinates)
     }
@@ -174,15 +174,15 @@ fn differential(tokens: &[Token]) -> Option<&[Token]> {
                 kind: Kind::Command(name),
                 ..
             },
-            rest @ ..,
-        ] if name == "partial" => Some(rest),
+            after @ ..,
+        ] if name == "partial" => Some(after),
         [
             Token {
                 kind: Kind::Letter('d'),
                 ..
             },
-            rest @ ..,
-        ] => Some(rest),
+            after @ ..,
+        ] => Some(after),
         _ => None,
     }
 }

@@ -22,12 +22,8 @@ impl Reader<'_> {
             ] => letter.to_string(),
             _ => return Err(self.unreadable("a vector is one letter", range)),
         };
-        let known = self
-            .vocabulary
-            .vectors
-            .iter()
-            .find(|(vector, _)| *vector == name);
-        let Some((_, components)) = known else {
+        let mut vectors = self.vocabulary.vectors.iter();
+        let Some((_, components)) = vectors.find(|(vector, _)| *vector == name) else {
             return Err(self.unreadable("a vector that the file does not name", range));
         };
         while self.sign('\'') {
@@ -65,64 +61,30 @@ impl Reader<'_> {
         Ok(Value::Plain(text + &power))
     }
 
-    /// A superscript that is a mark: ⁰, ′, †, [1;1], with a power after it or without.
+    /// Reads a superscript that is a mark (⁰, ′, †, [1;1]), perhaps with a power after the mark. Any other superscript
+    /// is a power: it is left to be read, and the answer is false.
     fn marked(&mut self, marks: &mut Marks) -> Read<bool> {
         let start = self.position;
         self.position += 1;
-        let above = self.argument()?;
-        let rest = match above {
-            [
-                Token {
-                    kind: Kind::Number(zero),
-                    ..
-                },
-                rest @ ..,
-            ] if zero == "0" => {
-                marks.base = true;
-                rest
-            }
-            [
-                Token {
-                    kind: Kind::Command(name),
-                    ..
-                },
-                rest @ ..,
-            ] if name == "dagger" => {
-                marks.dagger = true;
-                rest
-            }
-            [
-                Token {
-                    kind: Kind::Command(name),
-                    ..
-                },
-                rest @ ..,
-            ] if name == "prime" => {
-                marks.prime = true;
-                rest
-            }
-            [
-                Token {
-                    kind: Kind::Open('['),
-                    ..
-                },
-                ..,
-            ] => {
+        let Some((mark, after)) = self.argument()?.split_first() else {
+            self.position = start;
+            return Ok(false);
+        };
+        match &mark.kind {
+            Kind::Number(zero) if zero == "0" => marks.base = true,
+            Kind::Command(name) if name == "dagger" => marks.dagger = true,
+            Kind::Command(name) if name == "prime" => marks.prime = true,
+            Kind::Open('[') => {
                 marks.order = true;
-                &[]
+                return Ok(true);
             }
             _ => {
                 self.position = start;
                 return Ok(false);
             }
-        };
-        if let [
-            Token {
-                kind: Kind::Sign('^'),
-                ..
-            },
-            exponent @ ..,
-        ] = rest
+        }
+        if let Some((sign, exponent)) = after.split_first()
+            && sign.kind == Kind::Sign('^')
         {
             marks.power = Some(self.within(exponent)?);
         }
@@ -154,16 +116,14 @@ impl Reader<'_> {
 
     /// {D}, as a letter of another alphabet leaves it.
     pub(super) fn is_name_in_braces(&self) -> bool {
-        let rest = &self.tokens[self.position + 1..];
+        let inside = &self.tokens[self.position + 1..];
         let letter = |token: &&Token| matches!(token.kind, Kind::Letter(_));
-        let letters = rest.iter().take_while(letter).count();
-        letters > 0
-            && rest
-                .get(letters)
-                .is_some_and(|token| token.kind == Kind::End)
+        let letters = inside.iter().take_while(letter).count();
+        let end = inside.get(letters).map(|token| &token.kind);
+        letters > 0 && end == Some(&Kind::End)
     }
 
-    /// The longest name that is known, or one letter; hats are left out.
+    /// The longest name of the vocabulary, or one letter. Hats are left out.
     fn name(&mut self) -> Read<String> {
         let range = self.here();
         if self.kind() == Some(&Kind::Begin) {
@@ -176,39 +136,40 @@ impl Reader<'_> {
                     let inside = self.argument()?;
                     Ok(inside.iter().map(spelling).collect())
                 }
-                name if self.known(name) || names_a_letter(&name.to_lowercase()) => {
+                name if self.names(name) || names_a_letter(&name.to_lowercase()) => {
                     Ok(name.to_owned())
                 }
                 name => Err(self.unreadable(&format!("`\\{name}` is not known"), range)),
             };
         }
         let letter = |token: &&Token| matches!(token.kind, Kind::Letter(_));
-        let rest = &self.tokens[self.position..];
-        let run: Vec<String> = rest.iter().take_while(letter).map(spelling).collect();
+        let tokens = &self.tokens[self.position..];
+        let run: Vec<String> = tokens.iter().take_while(letter).map(spelling).collect();
         let longest = (2..=run.len())
             .rev()
-            .find(|&n| self.known(&run[..n].concat()));
+            .find(|&n| self.names(&run[..n].concat()));
         let length = longest.unwrap_or(1);
         self.position += length;
         Ok(run[..length].concat())
     }
 
-    fn known(&self, name: &str) -> bool {
+    /// Whether the vocabulary holds a name.
+    fn names(&self, name: &str) -> bool {
         let Vocabulary { constants, .. } = self.vocabulary;
-        self.varies(name) || constants.iter().any(|known| known == name)
+        self.varies(name) || constants.iter().any(|constant| constant == name)
     }
 
     /// Whether a name is a field or a law, which have base values.
     fn varies(&self, name: &str) -> bool {
         let Vocabulary { fields, laws, .. } = self.vocabulary;
-        fields.iter().chain(*laws).any(|known| known == name)
+        fields.iter().chain(*laws).any(|varying| varying == name)
     }
 
     /// The symbol in the language of the spec.
     fn meaning(&self, name: &str, marks: &Marks, range: Range<usize>) -> Read<String> {
         let below = &marks.below;
         let joined = format!("{name}_{below}");
-        if !below.is_empty() && self.known(&joined) {
+        if !below.is_empty() && self.names(&joined) {
             return Ok(joined);
         }
         let based = || match below.as_str() {
@@ -217,13 +178,13 @@ impl Reader<'_> {
         };
         let is_field = self.vocabulary.fields.iter().any(|field| field == name);
         let derived = |text: String| -> Read<String> {
-            let known = |q: &str| q == "t" || self.vocabulary.coordinates.contains(&q);
+            let is_coordinate = |q: &str| q == "t" || self.vocabulary.coordinates.contains(&q);
             below
                 .chars()
                 .rev()
                 .map(String::from)
                 .try_fold(text, |inner, q| {
-                    if known(&q) {
+                    if is_coordinate(&q) {
                         Ok(format!("d{q}({inner})"))
                     } else {
                         Err(self

@@ -52,17 +52,17 @@ const SIZES: [&str; 10] = [
 /// The tokens of a formula; what separates lines and columns is skipped, and so is punctuation at its end.
 pub(super) fn tokens(text: &str) -> Vec<Token> {
     let mut tokens = Vec::new();
-    let mut rest = text;
+    let mut unread = text;
     let mut sized = false;
-    while let Some(first) = rest.chars().next() {
-        let start = text.len() - rest.len();
-        let (kind, length) = next(rest, first, sized);
+    while let Some(first) = unread.chars().next() {
+        let start = text.len() - unread.len();
+        let (kind, length) = next(unread, first, sized);
         sized = matches!(&kind, Next::Size);
         if let Next::Token(kind) = kind {
             let range = start..start + length;
             tokens.push(Token { kind, range });
         }
-        rest = &rest[length..];
+        unread = &unread[length..];
     }
     tokens
 }
@@ -74,15 +74,15 @@ enum Next {
     Skip,
 }
 
-fn next(rest: &str, first: char, sized: bool) -> (Next, usize) {
+fn next(text: &str, first: char, sized: bool) -> (Next, usize) {
     let token = |kind| Next::Token(kind);
     match first {
-        '\\' => command(rest),
+        '\\' => command(text),
         '.' if sized => (Next::Skip, 1),
         '0'..='9' => {
             let decimal = |c: char| c.is_ascii_digit() || c == '.';
-            let length = rest.find(|c| !decimal(c)).unwrap_or(rest.len());
-            let number = rest[..length].trim_end_matches('.');
+            let length = text.find(|c| !decimal(c)).unwrap_or(text.len());
+            let number = text[..length].trim_end_matches('.');
             (token(Kind::Number(number.to_owned())), number.len())
         }
         '(' | '[' => (token(Kind::Open(first)), 1),
@@ -95,8 +95,8 @@ fn next(rest: &str, first: char, sized: bool) -> (Next, usize) {
     }
 }
 
-fn command(rest: &str) -> (Next, usize) {
-    let name = &rest[1..];
+fn command(text: &str) -> (Next, usize) {
+    let name = &text[1..];
     let length = name
         .find(|c: char| !c.is_ascii_alphabetic())
         .unwrap_or(name.len());
@@ -121,12 +121,12 @@ fn command(rest: &str) -> (Next, usize) {
     }
 }
 
-/// A formula as the symbols that are seen: each a letter, then the signs above and below it in an order of their
-/// own, so that formulas that look the same are the same.
+/// A formula as the symbols that are seen: each a letter, then the signs above and below it in a fixed
+/// order, so that formulas that look the same are the same.
 pub fn symbols(text: &str) -> Vec<Vec<String>> {
     let tokens = tokens(text);
-    let (mut symbols, mut rest) = (Vec::new(), tokens.as_slice());
-    while let Some(first) = rest.first() {
+    let (mut symbols, mut unread) = (Vec::new(), tokens.as_slice());
+    while let Some(first) = unread.first() {
         let name = match &first.kind {
             // {D} ends before its scripts, and scripts may stand alone in a part of a formula.
             Kind::Begin | Kind::End => None,
@@ -134,11 +134,11 @@ pub fn symbols(text: &str) -> Vec<Vec<String>> {
             kind => Some(shown(kind)),
         };
         if name.as_deref() != Some("") {
-            rest = &rest[1..];
+            unread = &unread[1..];
         }
         if let Some(name) = name {
-            let (scripts, after) = scripts(rest);
-            rest = after;
+            let (scripts, after) = scripts(unread);
+            unread = after;
             let named = std::iter::once(name).filter(|name| !name.is_empty());
             symbols.push(named.chain(scripts).collect());
         }
@@ -147,19 +147,19 @@ pub fn symbols(text: &str) -> Vec<Vec<String>> {
 }
 
 /// The signs above and below a symbol: marks, subscripts, powers.
-fn scripts(mut rest: &[Token]) -> (Vec<String>, &[Token]) {
+fn scripts(mut unread: &[Token]) -> (Vec<String>, &[Token]) {
     let (mut marks, mut below, mut powers) = (Vec::new(), Vec::new(), Vec::new());
     loop {
-        let after_braces = rest.iter().position(|token| token.kind != Kind::End);
-        let at = &rest[after_braces.unwrap_or(rest.len())..];
+        let after_braces = unread.iter().position(|token| token.kind != Kind::End);
+        let at = &unread[after_braces.unwrap_or(unread.len())..];
         match at.first().map(|token| &token.kind) {
             Some(Kind::Sign('\'')) => {
                 marks.push("'".to_owned());
-                rest = &at[1..];
+                unread = &at[1..];
             }
             Some(Kind::Sign(sign @ ('^' | '_'))) => {
                 let (inside, after) = group(&at[1..]);
-                rest = after;
+                unread = after;
                 let mut inside: Vec<String> = inside.iter().map(|t| shown(&t.kind)).collect();
                 let marked = |sign: &String| ["0", "dagger", "prime"].contains(&sign.as_str());
                 if *sign == '_' {
@@ -178,7 +178,7 @@ fn scripts(mut rest: &[Token]) -> (Vec<String>, &[Token]) {
     }
     marks.extend(below);
     marks.extend(powers);
-    (marks, rest)
+    (marks, unread)
 }
 
 /// The next pair of braces, or the next token, and what comes after it.
