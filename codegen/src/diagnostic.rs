@@ -164,7 +164,7 @@ impl Diagnostics {
         let mut shown = lines.to_owned();
         let longest = lines.lines().map(str::len).max().unwrap_or(0);
         if longest > LONGEST_LINE || lines.len() > LONGEST_TEXT {
-            // A place of its own in the path: the excerpt would have other columns.
+            // The path names line and column, because columns of the excerpt are not those of the file.
             let column = file.text[start..range.start].chars().count() + 1;
             path = format!("{path}:{number}:{column}, in an excerpt");
             let window = span.start.saturating_sub(WINDOW)..span.start + WINDOW;

@@ -118,9 +118,9 @@ impl Form {
         }
     }
 
-    /// Adds a multiple of another.
-    pub fn add(&mut self, graph: &mut Graph, other: &Form, factor: &Rational) {
-        for (monomial, coefficient) in &other.terms {
+    /// Adds `factor` · `form`.
+    pub fn add(&mut self, graph: &mut Graph, form: &Form, factor: &Rational) {
+        for (monomial, coefficient) in &form.terms {
             let scaled = graph.scale(*coefficient, factor.clone());
             self.accumulate(graph, monomial.clone(), scaled);
         }
@@ -148,11 +148,11 @@ impl Form {
         form
     }
 
-    /// The product, truncated beyond `order`.
-    pub fn multiply(&self, graph: &mut Graph, other: &Form, order: usize) -> Form {
+    /// The product with `form`, without terms of a degree above `order`.
+    pub fn multiply(&self, graph: &mut Graph, form: &Form, order: usize) -> Form {
         let mut product = Form::default();
         for (a, x) in &self.terms {
-            for (b, y) in &other.terms {
+            for (b, y) in &form.terms {
                 if a.len() + b.len() > order {
                     continue;
                 }

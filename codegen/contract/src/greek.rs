@@ -1,4 +1,4 @@
-//! Greek letters by name, for what takes no others than Latin ones.
+//! Names of Greek letters, for file formats and identifiers that take Latin letters alone.
 
 const SMALL: [(char, &str); 28] = [
     ('α', "alpha"),
@@ -34,13 +34,13 @@ const SMALL: [(char, &str); 28] = [
 
 /// Whether a letter is called so.
 pub fn names_a_letter(name: &str) -> bool {
-    SMALL.iter().any(|(_, known)| *known == name)
+    SMALL.iter().any(|(_, greek)| *greek == name)
 }
 
 /// The name of a small letter.
 pub fn small_greek(letter: char) -> Option<&'static str> {
-    let found = SMALL.iter().find(|(other, _)| *other == letter);
-    found.map(|(_, name)| *name)
+    let entry = SMALL.iter().find(|(small, _)| *small == letter);
+    entry.map(|(_, name)| *name)
 }
 
 /// The name of a small letter, or of the small one of a capital.

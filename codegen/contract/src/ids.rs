@@ -1,4 +1,5 @@
-//! Positions in the lists of a model, each a type of its own: a field is no balance, and the compiler knows.
+//! Positions in the lists of a model. Every list has its type of position, so that the compiler keeps fields and
+//! balances apart.
 
 use std::fmt::Debug;
 use std::hash::Hash;
@@ -76,8 +77,8 @@ impl<I: Id, T> Table<I, T> {
 
     /// The first id whose item satisfies a condition.
     pub fn position(&self, mut condition: impl FnMut(&T) -> bool) -> Option<I> {
-        let found = self.items.iter().position(&mut condition);
-        found.map(I::at)
+        let position = self.items.iter().position(&mut condition);
+        position.map(I::at)
     }
 
     /// A list of the same length.

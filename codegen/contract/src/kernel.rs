@@ -1,5 +1,5 @@
-//! Straight-line programs with common subexpressions shared, as data: what the Rust emitter prints, what the tape
-//! runs, and what the solver runs on numbers of its own, the same operations in the same order.
+//! Straight-line programs with common subexpressions shared, as data. The Rust emitter prints them, the tape runs them
+//! on `f64`, and the solver runs them on any [`Number`]: the same operations in the same order.
 
 use crate::ids::{BalanceId, CaseId, Table};
 use crate::jet::Function;
@@ -84,7 +84,7 @@ impl Kernel {
     pub fn real(&self) -> Vec<bool> {
         let mut real: Vec<bool> = Vec::with_capacity(self.operations.len());
         for operation in self.operations.iter() {
-            let own = match operation {
+            let is_real = match operation {
                 Operation::Constant(_) => true,
                 Operation::Input(array, _) => self.inputs[*array].real,
                 Operation::Add(a, b)
@@ -98,7 +98,7 @@ impl Kernel {
                 | Operation::Call(_, a) => real[*a],
                 Operation::Select(_, branches) => branches.iter().all(|&b| real[b]),
             };
-            real.push(own);
+            real.push(is_real);
         }
         real
     }

@@ -25,13 +25,13 @@ impl<T> Linearised<T> {
 
 /// Values taken off the front, one shape after another.
 struct Reader<'a> {
-    rest: &'a [f64],
+    unread: &'a [f64],
 }
 
 impl<'a> Reader<'a> {
     fn take(&mut self, count: usize) -> &'a [f64] {
-        let (taken, rest) = self.rest.split_at(count);
-        self.rest = rest;
+        let (taken, unread) = self.unread.split_at(count);
+        self.unread = unread;
         taken
     }
 
@@ -60,7 +60,7 @@ pub fn read_base_row(
     row: BaseRowId,
     out: &[f64],
 ) -> Linearised<f64> {
-    let mut reader = Reader { rest: out };
+    let mut reader = Reader { unread: out };
     let before = rows.iter().take(row.index());
     before.for_each(|row| {
         reader.linearised(&row.jets);
@@ -74,14 +74,16 @@ pub fn read_base_conditions<'a>(
     end: End,
     out: &[f64],
 ) -> Vec<(&'a [BaseJet], Linearised<f64>)> {
-    let mut reader = Reader { rest: out };
+    let mut reader = Reader { unread: out };
     let read = case.base_conditions.iter().map(|condition| {
         let value = reader.linearised(&condition.jets);
         (condition, value)
     });
     let read: Vec<_> = read.collect();
-    let own = read.into_iter().filter(|(c, _)| c.end == end);
-    own.map(|(c, value)| (c.jets.as_slice(), value)).collect()
+    read.into_iter()
+        .filter(|(c, _)| c.end == end)
+        .map(|(c, value)| (c.jets.as_slice(), value))
+        .collect()
 }
 
 /// [`KernelId::BaseIntegrals`]: integrands with their derivatives, each with the prescribed value.
@@ -100,7 +102,7 @@ pub fn read_integral(
     index: usize,
     out: &[f64],
 ) -> (Linearised<f64>, f64) {
-    let mut reader = Reader { rest: out };
+    let mut reader = Reader { unread: out };
     for jets in &integrals[..index] {
         reader.linearised(jets);
         reader.number();
@@ -118,7 +120,7 @@ pub fn read_conditions<'a>(
     conditions: &'a [ConditionInfo],
     out: [&'a [f64]; 2],
 ) -> impl Iterator<Item = (End, Vec<(&'a [Jet], f64)>)> {
-    let mut readers = out.map(|rest| Reader { rest });
+    let mut readers = out.map(|unread| Reader { unread });
     conditions.iter().map(move |condition| {
         let count = condition.monomials.len();
         let [lower, upper] = readers.each_mut().map(|reader| reader.take(count));
@@ -141,7 +143,7 @@ pub fn read_adjoint_conditions<'a>(
     conditions: &'a [AdjointConditionInfo],
     out: [&'a [f64]; 2],
 ) -> impl Iterator<Item = (End, Vec<(Jet<BalanceId>, f64)>)> {
-    let mut readers = out.map(|rest| Reader { rest });
+    let mut readers = out.map(|unread| Reader { unread });
     conditions.iter().map(move |condition| {
         let count = condition.jets.len();
         let [lower, upper] = readers.each_mut().map(|reader| reader.take(count));
@@ -174,7 +176,7 @@ pub fn write_closures<T>(closures: Vec<ClosureWeights<T>>) -> Vec<T> {
 
 /// The weights of one closure: [`KernelId::Closures`].
 pub fn read_closure(closures: &[ClosureInfo], index: usize, out: &[f64]) -> ClosureWeights<f64> {
-    let mut reader = Reader { rest: out };
+    let mut reader = Reader { unread: out };
     let mut weights = |info: &ClosureInfo| ClosureWeights {
         density: reader.take(info.density.len()).to_vec(),
         column: reader.take(info.column.len()).to_vec(),
@@ -217,7 +219,7 @@ pub fn write_measure<T>(measure: Measure<T>) -> Vec<T> {
 
 /// [`KernelId::Amplitude`]
 pub fn read_measure(info: &AmplitudeInfo, out: &[f64]) -> Measure<f64> {
-    let mut reader = Reader { rest: out };
+    let mut reader = Reader { unread: out };
     match info.field {
         None => Measure::Integral {
             weights: reader.take(info.weighted.len()).to_vec(),
@@ -249,7 +251,7 @@ pub fn write_outputs<T>(outputs: Vec<OutputTerms<T>>) -> Vec<T> {
 
 /// One output: [`KernelId::Outputs`].
 pub fn read_output(outputs: &[OutputInfo], index: usize, out: &[f64]) -> OutputTerms<f64> {
-    let mut reader = Reader { rest: out };
+    let mut reader = Reader { unread: out };
     let mut terms = |info: &OutputInfo| OutputTerms {
         place: reader.number(),
         coefficients: reader.take(info.monomials.len()).to_vec(),

@@ -19,11 +19,11 @@ pub trait Model: Send + Sync {
     /// Path and text of the spec and of each law file it uses, the spec first.
     fn sources(&self) -> Vec<(String, String)>;
 
-    /// Path and text of every law file at hand where the model was made, used or not.
+    /// Path and text of every law file that the model could have imported, used or not.
     fn laws(&self) -> Vec<(String, String)>;
 
-    /// Identity of the build of the generator that made the kernels: builds that may emit other operations differ in
-    /// it. Empty where no generator made them.
+    /// Identity of the build of the generator that made the kernels. Two builds that may emit different operations have
+    /// different identities. Empty if the kernels were written by hand.
     fn generator(&self) -> &str {
         ""
     }

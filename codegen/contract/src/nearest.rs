@@ -1,6 +1,6 @@
 //! Names that somebody may have meant.
 
-/// Names beyond this length are no slips of others.
+/// Longer names get no suggestion: to compare two names takes a time proportional to the product of their lengths.
 const LONGEST_NAME: usize = 64;
 
 /// The candidate nearest to `name`, if it is near enough to be a slip of the keyboard.

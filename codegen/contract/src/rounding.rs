@@ -40,38 +40,38 @@ impl Neg for WithRounding {
 
 impl Add for WithRounding {
     type Output = Self;
-    fn add(self, other: Self) -> Self {
+    fn add(self, right: Self) -> Self {
         WithRounding {
-            value: self.value + other.value,
-            size: self.size + other.size,
+            value: self.value + right.value,
+            size: self.size + right.size,
         }
     }
 }
 
 impl Sub for WithRounding {
     type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        self + -other
+    fn sub(self, right: Self) -> Self {
+        self + -right
     }
 }
 
 impl Mul for WithRounding {
     type Output = Self;
-    fn mul(self, other: Self) -> Self {
+    fn mul(self, right: Self) -> Self {
         WithRounding {
-            value: self.value * other.value,
-            size: self.size * other.value.abs() + self.value.abs() * other.size,
+            value: self.value * right.value,
+            size: self.size * right.value.abs() + self.value.abs() * right.size,
         }
     }
 }
 
 impl Div for WithRounding {
     type Output = Self;
-    fn div(self, other: Self) -> Self {
-        let value = self.value / other.value;
+    fn div(self, right: Self) -> Self {
+        let value = self.value / right.value;
         WithRounding {
             value,
-            size: (self.size + value.abs() * other.size) / other.value.abs(),
+            size: (self.size + value.abs() * right.size) / right.value.abs(),
         }
     }
 }
@@ -80,8 +80,8 @@ macro_rules! with_real {
     ($($trait:ident $method:ident)*) => {
         $(impl $trait<f64> for WithRounding {
             type Output = Self;
-            fn $method(self, other: f64) -> Self {
-                $trait::$method(self, WithRounding::from(other))
+            fn $method(self, right: f64) -> Self {
+                $trait::$method(self, WithRounding::from(right))
             }
         })*
     };
@@ -167,12 +167,12 @@ mod tests {
     #[test]
     fn slopes_of_functions() {
         let x = 0.7_f64;
-        let found = WithRounding {
+        let image = WithRounding {
             value: x,
             size: 1e3,
         }
         .tanh();
         let expected = 1e3 / x.cosh().powi(2) + x.tanh();
-        assert!((found.size - expected).abs() < 1e-10);
+        assert!((image.size - expected).abs() < 1e-10);
     }
 }

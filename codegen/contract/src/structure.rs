@@ -28,11 +28,11 @@ pub struct Structure {
     pub balances: Table<BalanceId, String>,
     /// Highest y-derivative of base fields that kernels ask for.
     pub base_order: usize,
-    /// What is needed to solve for the base state.
+    /// The problem of the base state.
     pub base: BaseInfo,
-    /// Points of the balances and values of the profiles in L.
+    /// Offsets of L, whose rows are balances and whose columns are fields.
     pub offsets: OffsetsInfo<BalanceId, FieldId>,
-    /// The same for L†, from balances to fields.
+    /// Offsets of L†, whose rows are fields and whose columns are balances.
     pub adjoint_offsets: OffsetsInfo<FieldId, BalanceId>,
     /// Which fields and balances are odd in the mirror x → −x, where the model has that symmetry.
     pub parity: Option<ParityInfo>,
@@ -58,9 +58,9 @@ pub struct Structure {
     pub outputs: Vec<OutputInfo>,
     /// What the spec calls typical.
     pub typical: Option<TypicalInfo>,
-    /// Where the spec says what, for messages.
+    /// Lines of the spec, for messages.
     pub lines: LinesInfo,
-    /// Operations of all kernels as written, and after common subexpressions are shared.
+    /// Two numbers: operations of all kernels as written, and after common subexpressions are shared.
     pub operations: Vec<usize>,
 }
 
@@ -77,12 +77,13 @@ pub struct LinesInfo {
     pub balances: Table<BalanceId, usize>,
 }
 
-/// A wavenumber that shows what the model is about.
+/// The wavenumber of the block `typical`: one at which the model shows what it is about.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TypicalInfo {
     /// Wavenumber.
     pub k: f64,
-    /// Real and imaginary part of the eigenvalue that its mode is near to; empty for the leading one.
+    /// Real and imaginary part of an eigenvalue near that of the mode: two numbers, or none for the mode that grows
+    /// fastest.
     pub near: Vec<f64>,
 }
 
@@ -110,11 +111,11 @@ pub struct ParameterInfo {
     pub doc: String,
     /// Its value where none is set.
     pub default: f64,
-    /// The least value it accepts.
+    /// The least value it accepts; −∞ if there is none.
     pub lower: f64,
-    /// The largest value it accepts.
+    /// The largest value it accepts; +∞ if there is none.
     pub upper: f64,
-    /// Names of the values of a switch.
+    /// Names of the values of a switch, whose value is a position in this list; empty for a number.
     pub choices: Vec<String>,
     /// Whether it takes whole numbers alone.
     pub whole: bool,
@@ -122,7 +123,7 @@ pub struct ParameterInfo {
     pub automatic: bool,
 }
 
-/// What is needed to solve for the base state.
+/// The problem of the base state: unknown fields, balances, integral and automatic conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseInfo {
     /// Fields that are solved for; profiles first.
@@ -131,7 +132,7 @@ pub struct BaseInfo {
     pub closed: Table<FieldId, bool>,
     /// Balances that it has to satisfy.
     pub rows: Table<BaseRowId, BaseRowInfo>,
-    /// Points of `rows` and values of the profiles among `solved`.
+    /// Offsets of the base problem, from `rows` to `solved`.
     pub offsets: OffsetsInfo<BaseRowId, SolvedId>,
     /// Base jets that each integrand depends on.
     pub integrals: Vec<Vec<BaseJet>>,
@@ -139,20 +140,20 @@ pub struct BaseInfo {
     pub automatic: Vec<AutomaticInfo>,
 }
 
-/// Row i is collocated at N + `rows[i]` points, column j has N + `columns[j]` values; as many
-/// conditions as the values are more than the points.
+/// The staggered discretisation at resolution N: row i is collocated at N + `rows[i]` points, column j has
+/// N + `columns[j]` values. Values exceed points by the number of boundary conditions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffsetsInfo<Row, Column> {
-    /// By row.
+    /// Additional points of each row.
     pub rows: Table<Row, usize>,
-    /// By column.
+    /// Additional values of each column.
     pub columns: Table<Column, usize>,
 }
 
 /// ∂y^order of a base field.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseJet {
-    /// Its field.
+    /// The base field.
     pub field: FieldId,
     /// Powers of ∂y.
     pub order: usize,
@@ -189,9 +190,9 @@ pub struct ParityInfo {
 /// A term of an operator from columns to rows: L takes fields to balances, L† balances to fields.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TermInfo<Row, Column> {
-    /// Where it stands.
+    /// The row that holds the term: a balance in L, a field in L†.
     pub row: Row,
-    /// What it is applied to.
+    /// The derivative that the coefficient multiplies.
     pub jet: Jet<Column>,
 }
 
@@ -250,16 +251,16 @@ pub struct AdjointConditionInfo {
     pub jets: Vec<Jet<BalanceId>>,
 }
 
-/// What makes the problem at k = 0 solvable.
+/// A closure at k = 0: an integral constraint, and the column of its multiplier.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosureInfo {
     /// Which kind.
     pub kind: ClosureKind,
-    /// The gauge or the unknown.
+    /// The field of a gauge or a drift, or the unknown number; `None` for conserved and claimed integrals.
     pub field: Option<FieldId>,
-    /// The jets whose integral is closed.
+    /// The jets of the linear density; one coefficient each in [`KernelId::Closures`].
     pub density: Vec<Jet>,
-    /// Balances that the multiplier enters.
+    /// Balances that the multiplier enters; one weight each in [`KernelId::Closures`].
     pub column: Vec<BalanceId>,
 }
 
@@ -292,13 +293,14 @@ pub struct OutputInfo {
 pub enum ClosureKind {
     /// An integral that does not change in time.
     Conserved,
-    /// Said to be conserved: recognised in the collocated problem, or dropped.
+    /// An integral that the spec claims to be conserved. The solver keeps it if it is conserved in the collocated problem,
+    /// and drops it otherwise.
     Claimed,
     /// The constant of a field that is determined up to one.
     Gauge,
     /// A gauge with a time derivative: its multiplier is the rate at which the constant drifts.
     Drift,
-    /// A number that its own condition determines.
+    /// A number without a profile that an integral condition determines.
     Unknown,
 }
 
@@ -330,9 +332,9 @@ pub enum KernelId {
     Nonlinear,
     /// Coefficients of the boundary conditions of one case.
     Conditions(CaseId),
-    /// The same of the adjoint problem.
+    /// Coefficients of the adjoint boundary conditions of one case.
     AdjointConditions(CaseId),
-    /// Densities and columns of what closes k = 0, in one case.
+    /// Densities and columns of the closures at k = 0 of one case.
     Closures(CaseId),
     /// Weights, then the prescribed value, then the place.
     Amplitude,
@@ -361,7 +363,7 @@ impl ParameterInfo {
 }
 
 impl Structure {
-    /// Where what stands in the point state.
+    /// The layout of the point state.
     pub fn state(&self) -> StateLayout {
         StateLayout::new(self.parameters.len(), self.fields.len(), self.base_order)
     }
@@ -387,7 +389,7 @@ impl Structure {
         (0..count).map(FieldId::at)
     }
 
-    /// A field by name.
+    /// The field of this name; `None` if there is none.
     pub fn field(&self, name: &str) -> Option<FieldId> {
         self.fields.position(|f| f.name == name)
     }

@@ -1,4 +1,4 @@
-//! The base state as a problem of its own: its balances, what they are solved for, its integrals.
+//! The problem of the base state: its balances, the fields that they are solved for, its integrals.
 
 use super::Opener;
 use super::deriver::Deriver;

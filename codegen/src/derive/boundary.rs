@@ -1,9 +1,10 @@
 //! The adjoint boundary conditions, by linear algebra on the boundary form.
 //!
 //! ⟨Y, L X⟩ − ⟨L† Y, X⟩ = [ Σ (−1)^l ∂^l(c Y) ∂x^a ∂y^(d−1−l) X ] between the ends: a bilinear
-//! form in the values and derivatives of Y and X there. The direct conditions express some of X's
-//! by the others; whatever then multiplies one that is left free must vanish: these are the adjoint
-//! conditions. The base state enters only through its own boundary conditions.
+//! form in the values and derivatives of Y and X there. The direct conditions express some jets of X by
+//! the jets that they leave free. The form vanishes for every X if the factor of each free jet vanishes:
+//! these factors are the adjoint conditions. Coefficients are simplified by the boundary conditions of
+//! the base state.
 
 use super::linear::DirectTerm;
 use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Rational, Variable};
@@ -19,11 +20,11 @@ pub type Combination<V> = BTreeMap<Jet<V>, Symbol>;
 /// X-jet → combination of Y-jets.
 pub type BoundaryForm = BTreeMap<Jet<FieldId>, Combination<BalanceId>>;
 
-/// into += other · factor
-fn symbol_add(graph: &mut Graph, into: &mut Symbol, other: &Symbol, factor: &Symbol) {
-    for (&(a, b), &left) in other {
-        for (&(c, d), &right) in factor {
-            let product = graph.mul(left, right);
+/// into += left · right, where |∂x|² = −∂x².
+fn symbol_add(graph: &mut Graph, into: &mut Symbol, left: &Symbol, right: &Symbol) {
+    for (&(a, b), &coefficient) in left {
+        for (&(c, d), &factor) in right {
+            let product = graph.mul(coefficient, factor);
             let product = if (b + d) / 2 % 2 == 1 {
                 graph.neg(product)
             } else {
@@ -41,7 +42,7 @@ fn symbol_add(graph: &mut Graph, into: &mut Symbol, other: &Symbol, factor: &Sym
 
 /// Simplifies coefficients at one end and drops those that vanish.
 pub struct Simplifier<'a> {
-    /// Replaces base atoms by what the base's own boundary conditions say of them.
+    /// Replaces base atoms by the values that the boundary conditions of the base state give them.
     pub at_end: &'a mut dyn FnMut(&mut Graph, Id) -> Id,
 }
 
@@ -80,7 +81,8 @@ pub fn split<V: Copy>(jet: Jet<V>, coefficient: Id) -> (Jet<V>, Symbol) {
     (jet.profile(), symbol)
 }
 
-/// The entry to eliminate by: no x-derivative in it; the highest y-derivative for choice.
+/// The entry to eliminate by. Its symbol holds no ∂x, so that the division is exact at every k. Among several such
+/// entries the highest y-derivative is taken, and among equal orders the first field.
 fn pivot<V: Copy + Ord>(combination: &Combination<V>) -> Option<(Jet<V>, Id)> {
     combination
         .iter()
@@ -89,13 +91,13 @@ fn pivot<V: Copy + Ord>(combination: &Combination<V>) -> Option<(Jet<V>, Id)> {
         .map(|(jet, symbol)| (*jet, symbol[&(0, 0)]))
 }
 
-/// Reduced conditions: each says `jet = −Σ symbol · other jets`.
+/// Reduced conditions: each says `jet = −Σ symbol · free jets`, the free jets being those that no rule is solved for.
 #[derive(Clone)]
 pub struct Reduced<V> {
     pub rules: Vec<(Jet<V>, Combination<V>)>,
 }
 
-/// Gaussian elimination. Rows without an admissible pivot come back in `Err`.
+/// Gauss–Jordan elimination. `Err` holds a condition without a pivot: the symbol of every jet in it holds ∂x.
 pub fn reduce<V: Copy + Ord>(
     graph: &mut Graph,
     conditions: Vec<Combination<V>>,
@@ -108,7 +110,7 @@ pub fn reduce<V: Copy + Ord>(
     let mut reduced = Reduced { rules: Vec::new() };
     loop {
         open.retain(|c| !c.is_empty());
-        // The shortest condition first: it makes the others shorter.
+        // The shortest condition goes first: substituting it keeps the remaining conditions short.
         open.sort_by_key(Combination::len);
         let Some(position) = open.iter().position(|c| pivot(c).is_some()) else {
             break;
@@ -124,13 +126,13 @@ pub fn reduce<V: Copy + Ord>(
             }
         }
         let row = simplifier.combination(graph, row);
-        for other in &mut open {
-            *other = substitute(graph, other, jet, &row);
-            *other = simplifier.combination(graph, std::mem::take(other));
+        for condition in &mut open {
+            let shorter = substitute(graph, condition, jet, &row);
+            *condition = simplifier.combination(graph, shorter);
         }
         for (_, rule) in &mut reduced.rules {
-            *rule = substitute(graph, rule, jet, &row);
-            *rule = simplifier.combination(graph, std::mem::take(rule));
+            let substituted = substitute(graph, rule, jet, &row);
+            *rule = simplifier.combination(graph, substituted);
         }
         reduced.rules.push((jet, row));
     }
@@ -158,8 +160,8 @@ fn substitute<V: Copy + Ord>(
         .into_iter()
         .map(|(key, id)| (key, graph.neg(id)))
         .collect();
-    for (other, symbol) in row {
-        symbol_add(graph, result.entry(*other).or_default(), symbol, &minus);
+    for (jet, symbol) in row {
+        symbol_add(graph, result.entry(*jet).or_default(), symbol, &minus);
     }
     result
 }
@@ -200,8 +202,8 @@ pub fn boundary_form(graph: &mut Graph, terms: &[DirectTerm]) -> BoundaryForm {
     form
 }
 
-/// What must vanish for the boundary form to vanish at one end: one combination of Y-jets for each
-/// X-jet that the direct conditions leave free.
+/// One combination of Y-jets for each X-jet that the direct conditions leave free at one end. The boundary form
+/// vanishes there if all of them do.
 pub fn demands(
     graph: &mut Graph,
     form: &BoundaryForm,
@@ -213,15 +215,11 @@ pub fn demands(
         let Some(factor) = demands.remove(jet) else {
             continue;
         };
-        // X-jet = −Σ symbol · others
-        for (other, symbol) in rule {
+        // X-jet = −Σ symbol · free X-jets
+        for (free, symbol) in rule {
             let minus: Symbol = symbol.iter().map(|(k, &id)| (*k, graph.neg(id))).collect();
             for (y_jet, y_symbol) in &factor {
-                let entry = demands
-                    .entry(*other)
-                    .or_default()
-                    .entry(*y_jet)
-                    .or_default();
+                let entry = demands.entry(*free).or_default().entry(*y_jet).or_default();
                 symbol_add(graph, entry, y_symbol, &minus);
             }
         }
@@ -247,7 +245,7 @@ pub fn conjugate<V: Copy + Ord>(graph: &mut Graph, combination: &Combination<V>)
     result
 }
 
-/// A reduced rule written out as condition: jet + Σ symbol · others = 0.
+/// A reduced rule written out as a condition: jet + Σ symbol · free jets = 0.
 pub fn as_condition<V: Copy + Ord>(
     graph: &mut Graph,
     jet: Jet<V>,

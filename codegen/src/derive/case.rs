@@ -1,5 +1,5 @@
-//! One case: the boundary conditions under one combination of the structural switches, the adjoint
-//! conditions that follow from them, and what closes the problem at k = 0.
+//! One case: the boundary conditions under one combination of the structural switches, the adjoint conditions that
+//! follow from them, and the closures of the problem at k = 0.
 
 use super::base_wall::{BaseCheck, base_checks, base_conditions};
 use super::boundary::{Combination, Simplifier, as_condition, conjugate, demands, reduce};
@@ -35,11 +35,11 @@ pub struct Case {
     pub conditions: Vec<WallCondition>,
     /// Conditions of the base state.
     pub base_conditions: Vec<BaseCondition>,
-    /// Conditions that hold for fields of the base state in closed form: to be checked.
+    /// Conditions that base fields in closed form have to meet; the solver checks them.
     pub base_checks: Vec<BaseCheck>,
     /// The adjoint boundary conditions, or why there are none.
     pub adjoint: Result<Vec<AdjointCondition>, String>,
-    /// What closes k = 0.
+    /// The closures at k = 0: constraints and multipliers that make the problem of the mean regular.
     pub closures: Vec<CaseClosure>,
     /// Positions in the block `mean` of the conserved integrals among them.
     pub conserved: Vec<usize>,
@@ -47,6 +47,7 @@ pub struct Case {
     pub undeclared: Vec<String>,
 }
 
+/// The case of one combination of choices; `None` after a mistake in its conditions.
 pub(super) fn derive(
     deriver: &mut Deriver,
     problem: CaseProblem,
@@ -90,7 +91,8 @@ pub(super) fn derive(
     })
 }
 
-/// The conditions expanded around the base state; what holds of the base state alone is left out.
+/// The conditions expanded around the base state, without the terms of degree 0, which the base state alone has to
+/// satisfy.
 fn wall_conditions(
     deriver: &mut Deriver,
     written: &[&Condition],
@@ -147,6 +149,7 @@ fn check_independent(
     None
 }
 
+/// Checks that there are `needed` conditions, the total order of the balances in ∂y.
 fn check_count(
     deriver: &Deriver,
     needed: usize,
@@ -169,8 +172,8 @@ fn check_count(
     let counts: Vec<String> = model
         .profiles()
         .map(|field| {
-            let named = conditions.iter().filter_map(WallCondition::about);
-            let count = named.filter(|f| *f == field).count();
+            let fields = conditions.iter().filter_map(WallCondition::about);
+            let count = fields.filter(|f| *f == field).count();
             format!("{} {count}", model.fields[field].name)
         })
         .collect();
@@ -197,7 +200,9 @@ fn check_count(
     None
 }
 
-/// The adjoint conditions, or why no set of them independent of the eigenvalue exists.
+/// The adjoint conditions, as many as the direct ones, or why no such set exists that is independent of the eigenvalue.
+///
+/// They make the boundary form [⟨Y, B X⟩] vanish at each end for every X that obeys the direct conditions.
 fn adjoint_conditions(
     deriver: &mut Deriver,
     problem: &CaseProblem,
@@ -213,40 +218,42 @@ fn adjoint_conditions(
         let mut simplifier = Simplifier {
             at_end: &mut simplify,
         };
+        // [⟨Y, B X⟩] = Σ over free X-jets of X-jet · (combination of conj(Y)-jets): each combination must vanish.
         let demanded = demands(deriver.graph, &walls.form, direct, &mut simplifier);
-        let mut own = Vec::new();
+        let mut conditions = Vec::new();
         for (jet, combination) in &demanded {
             let mut coefficients = combination.values().flat_map(|symbol| symbol.values());
             if coefficients.any(|&id| deriver.graph.is_undefined(id)) {
                 return Err(singular_end(deriver, *end));
             }
-            own.push(conjugate(deriver.graph, combination));
+            conditions.push(conjugate(deriver.graph, combination));
             reasons.push((*end, *jet, combination.clone()));
         }
-        rows.push((*end, own));
+        rows.push((*end, conditions));
     }
-    let mut found = solved(deriver, &rows, rules)?;
-    // A singular end asks for less: regularity stands in.
+    let mut conditions = solved(deriver, &rows, rules)?;
+    // Where the coefficient of the highest derivative vanishes at an end, the boundary form asks for less there. The
+    // missing conditions say that the adjoint fields are regular; each is kept that is independent of those before.
     for index in 0..rows.len() {
         let end = rows[index].0;
         for condition in regular::conditions(deriver, problem.adjoint, end, rules) {
-            if found.len() >= needed {
+            if conditions.len() >= needed {
                 break;
             }
             let mut longer = rows.clone();
             longer[index].1.push(condition);
             let more = solved(deriver, &longer, rules)?;
-            if more.len() > found.len() {
-                (rows, found) = (longer, more);
+            if more.len() > conditions.len() {
+                (rows, conditions) = (longer, more);
             }
         }
     }
-    if found.len() == needed {
-        return Ok(found);
+    if conditions.len() == needed {
+        return Ok(conditions);
     }
     let mut text = format!(
         "no adjoint boundary conditions independent of the eigenvalue exist: the boundary form asks for {} where {needed} are needed;",
-        found.len()
+        conditions.len()
     );
     for (end, jet, combination) in reasons {
         text += &describe_demand(deriver, problem, end, jet, &combination);
@@ -254,7 +261,8 @@ fn adjoint_conditions(
     Err(text.trim_end_matches(',').to_owned())
 }
 
-/// The demands of both ends solved for the highest derivatives.
+/// The conditions of both ends, each solved for the highest derivative in it; conditions that follow from the ones
+/// before them are gone.
 fn solved(
     deriver: &mut Deriver,
     rows: &[(End, Vec<Combination<BalanceId>>)],
@@ -280,6 +288,7 @@ fn solved(
     Ok(conditions)
 }
 
+/// The advice for an end where dividing by the highest coefficient gives 1/0.
 fn singular_end(deriver: &Deriver, end: End) -> String {
     let interval = deriver.model.interval.as_ref();
     let (name, place) = interval.map_or(("y", ""), |i| (i.name.as_str(), i.written(end)));

@@ -1,9 +1,10 @@
-//! What closes the problem at k = 0: conserved integrals, gauges, unknown numbers.
+//! The closures of the problem at k = 0: conserved integrals, gauges, unknown numbers.
 //!
 //! An integral is conserved to first order if some ℓ(y) with M0†ℓ = (its linear density) obeys L†ℓ = 0 at k = 0 and
-//! makes the boundary form vanish: then d/dt ∫ density = 0. The tool finds ℓ, it does not believe. Balances without
-//! mass (continuity) leave components of ℓ open; where zero does not do for them, the claim is handed on, and
-//! the collocated problem decides. Beyond first order the multiplier decides, which has to vanish.
+//! makes the boundary form vanish: then d/dt ∫ density = ∫ ℓ M0 ∂t X = ∫ ℓ L X = 0. We look for ℓ and never take a claim
+//! of the spec for granted. Balances without mass (continuity) leave components of ℓ open. If ℓ cannot be had with these
+//! components zero, the claim goes to the solver, which decides it for the collocated problem. Beyond first order the
+//! multiplier decides, which has to vanish.
 
 use super::Case;
 use super::density::Density;
@@ -27,7 +28,8 @@ pub enum CaseClosure {
         /// Balances that the multiplier enters, with weights.
         column: Vec<(BalanceId, Id)>,
     },
-    /// The same, claimed by the spec: to be recognised in the collocated problem.
+    /// An integral that the spec claims to be conserved and that no proof can decide. The solver looks for it in the
+    /// collocated problem, and drops it if it is not conserved there.
     Claimed {
         /// What is integrated.
         density: Density,
@@ -59,7 +61,7 @@ pub enum CaseClosure {
 }
 
 impl CaseClosure {
-    /// What it integrates; nothing for a gauge, which integrates its field.
+    /// What it integrates; `None` for a gauge, which integrates its field.
     pub fn density(&self) -> Option<&Density> {
         match self {
             CaseClosure::Conserved { density, .. }
@@ -69,7 +71,7 @@ impl CaseClosure {
         }
     }
 
-    /// Whether it says of a conserved integral what `density` says, to first order.
+    /// Whether it keeps an integral with the linear part of `density`.
     fn is_about(&self, density: &Density) -> bool {
         !matches!(self, CaseClosure::Unknown { .. })
             && self.density().is_some_and(|d| d.linear == density.linear)
@@ -83,7 +85,7 @@ pub(super) struct Closures {
     pub conserved: Vec<usize>,
     /// Integrals that are kept and not declared.
     pub undeclared: Vec<String>,
-    /// How many, the first of the list, are integrals of the base state that nothing declares.
+    /// Number of closures at the head of the list that are integrals of the base state and not declared.
     candidates: usize,
 }
 
@@ -95,7 +97,9 @@ pub(super) fn derive(
     mistakes: &mut Vec<Diagnostic>,
 ) -> Closures {
     let model = deriver.model;
+    // Each block below works at k = 0, where the boundary form has terms without ∂x alone.
     let walls = mean_walls(deriver, problem, rules);
+    // At each end the conditions as rules `jet = −Σ coefficient · free jets`, for the products beyond first order.
     let solved = reduced(deriver, problem.walls, rules).ok();
     let ends = End::BOTH.map(|end| {
         let said = end_rules(problem, solved.as_ref(), end);
@@ -160,7 +164,7 @@ impl Closures {
             undeclared: Vec::new(),
             candidates: 0,
         };
-        // An integral that fixes the base is a candidate for a conserved one.
+        // An integral that fixes the base state may be conserved, though the spec does not declare it.
         let candidates = model
             .base
             .integrals
@@ -182,8 +186,8 @@ impl Closures {
         closures
     }
 
-    /// Takes in an integral if it is conserved, or if it stands in the block `mean` (at `declared`) and no proof can
-    /// decide.
+    /// Adds an integral if it is conserved, or if it stands in the block `mean` (at position `declared`) and no proof
+    /// can decide.
     fn conserve(
         &mut self,
         deriver: &mut Deriver,
@@ -200,14 +204,16 @@ impl Closures {
         if declared.is_none() && density.is_nonlinear {
             return;
         }
+        // M0†ℓ = linear density
         let column = multiplier(deriver, problem.linear, &density.linear);
+        // L†ℓ = 0 at k = 0, and the boundary form of ℓ vanishes at both ends.
         let proved = column.filter(|column| {
             let linear = &density.linear;
             deriver.aside(|deriver| walls.carries(deriver, problem, column, linear))
                 && conserved(deriver, problem, walls, column, &self.list)
         });
         if let Some(column) = proved {
-            // An integral of the base that only the linear balances keep is none to be kept.
+            // An integral that fixes the base state, but that the products of the balances change, is not kept.
             let refuted = |deriver: &mut Deriver| matches!(proof.kept(deriver, &column), Ok(None));
             if declared.is_none() && deriver.aside(refuted) {
                 return;
@@ -226,8 +232,8 @@ impl Closures {
         }
     }
 
-    /// Makes one closure of two that agree to first order: an integral of the base that is declared as conserved too
-    /// keeps what is declared. Two that are declared have to agree.
+    /// Merges two closures that agree to first order. An integral of the base state that the spec also declares as
+    /// conserved takes the declared density; two declared integrals have to agree.
     fn unite(&mut self, position: usize, density: Density, declared: Option<usize>) {
         let is_candidate = position < self.candidates;
         if let CaseClosure::Conserved {
@@ -245,7 +251,7 @@ impl Closures {
     }
 }
 
-/// A claim that is proved for other choices of the switches does not hold where it is not.
+/// Drops a claim in the cases where it is not proved, if some case proves it.
 pub(super) fn drop_refuted(cases: &mut [Case]) {
     let proved: Vec<CaseClosure> = cases
         .iter()
@@ -261,8 +267,8 @@ pub(super) fn drop_refuted(cases: &mut [Case]) {
     }
 }
 
-/// Whether a proof may fail for an integral that is conserved: where some balance holds no time derivative, or one
-/// under ∂y, ℓ is not what the mass matrix alone says.
+/// Whether a proof may fail for an integral that is conserved. If some balance holds no time derivative, or one under
+/// ∂y, then M0†ℓ = (linear density) does not determine ℓ.
 fn is_undecided(linear: &[DirectTerm], balances: &Table<BalanceId, Balance>) -> bool {
     let massless = |row| !linear.iter().any(|t| t.row == row && t.jet.t > 0);
     balances.ids().any(massless) || linear.iter().any(|t| t.jet.t > 0 && t.jet.y > 0)

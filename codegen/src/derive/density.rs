@@ -59,7 +59,8 @@ impl Deriver<'_> {
     }
 }
 
-/// 0 for an expression without jets, 1 for one that is written linearly in them, 2 for any other.
+/// The degree of an expression in jets, as far as its form shows it: 0 without jets, 1 for a sum of jets with
+/// coefficients, 2 for everything else.
 fn degree(graph: &Graph, id: Id) -> usize {
     let order = graph.topological(&[id]);
     let mut degrees = std::collections::HashMap::new();

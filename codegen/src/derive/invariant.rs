@@ -1,4 +1,5 @@
-//! Integrals that the balances keep, nonlinear terms included: found, and proved to the order of the derivation.
+//! Integrals that the balances keep, nonlinear terms included: their search, and the proof to the order of the
+//! derivation.
 //!
 //! S = Σ_i ℓ_i (balance i) is a divergence in x, y and t if and only if its variational derivative by every field
 //! vanishes, E_q S = Σ_J (−∂)^J ∂S/∂q_J = 0; what integration by parts then leaves at the two ends must vanish under the
@@ -34,7 +35,7 @@ pub(super) struct Proof<'a> {
     pub ends: Vec<(End, Id, Option<EndRules>)>,
 }
 
-/// What the conditions of one end say; nothing where they are nonlinear, or hold |∂x| or ∂t.
+/// The conditions of one end as rules `jet = −Σ coefficient · free jets`; `None` if they are nonlinear, or hold |∂x| or ∂t.
 pub(super) fn end_rules(
     problem: &CaseProblem,
     reduced: Option<&Vec<(End, Reduced<FieldId>)>>,
@@ -47,19 +48,19 @@ pub(super) fn end_rules(
     let (_, reduced) = reduced?.iter().find(|(at, _)| *at == end)?;
     let mut rules = EndRules::new();
     for (jet, combination) in &reduced.rules {
-        let mut others = Vec::new();
-        for (other, symbol) in combination {
+        let mut terms = Vec::new();
+        for (free, symbol) in combination {
             for (&(x, absx), &coefficient) in symbol {
                 if absx > 0 {
                     return None;
                 }
-                others.push((Jet { x, ..*other }, coefficient));
+                terms.push((Jet { x, ..*free }, coefficient));
             }
         }
         if jet.t > 0 {
             return None;
         }
-        rules.push((*jet, others));
+        rules.push((*jet, terms));
     }
     Some(rules)
 }
@@ -72,12 +73,13 @@ impl Proof<'_> {
         let columns = self.columns(deriver);
         for column in self.null(deriver, &columns) {
             let linear = self.walls.density(deriver, self.problem, &column);
-            let known = declared.iter().filter_map(CaseClosure::density);
-            let known: Vec<Vec<(Jet, Id)>> = known
+            let named: Vec<Vec<(Jet, Id)>> = declared
+                .iter()
+                .filter_map(CaseClosure::density)
                 .map(|density| density.linear.clone())
                 .chain(densities.iter().cloned())
                 .collect();
-            if linear.is_empty() || depends(deriver, &linear, &known) {
+            if linear.is_empty() || depends(deriver, &linear, &named) {
                 continue;
             }
             if let Ok(Some(sum)) = self.kept(deriver, &column) {
@@ -311,15 +313,15 @@ fn solved(graph: &mut Graph, jet: Jet, said: &EndRules) -> Form {
             let one = graph.one();
             form.accumulate(graph, vec![jet], one);
         }
-        Some((_, others)) => {
-            for (other, coefficient) in others {
+        Some((_, terms)) => {
+            for (free, coefficient) in terms {
                 let coefficient = graph.neg(*coefficient);
-                let other = Jet {
-                    x: other.x + jet.x,
-                    t: other.t + jet.t,
-                    ..*other
+                let free = Jet {
+                    x: free.x + jet.x,
+                    t: free.t + jet.t,
+                    ..*free
                 };
-                form.accumulate(graph, vec![other], coefficient);
+                form.accumulate(graph, vec![free], coefficient);
             }
         }
     }
@@ -356,10 +358,10 @@ fn variation_by(
             if is_nonlocal {
                 continue;
             }
-            let mut others = monomial.clone();
-            others.remove(position);
+            let mut factors = monomial.clone();
+            factors.remove(position);
             let mut part = Form::default();
-            part.terms.insert(others, coefficient);
+            part.terms.insert(factors, coefficient);
             let y = if along == Along::TheInterior {
                 jet.y
             } else {
@@ -425,10 +427,10 @@ fn flux(graph: &mut Graph, form: &Form) -> Form {
         }
         let share = Rational::new(1.into(), (monomial.len() as i64).into());
         for (position, jet) in monomial.iter().enumerate() {
-            let mut others = monomial.clone();
-            others.remove(position);
+            let mut factors = monomial.clone();
+            factors.remove(position);
             let mut remainder = Form::default();
-            remainder.terms.insert(others, coefficient);
+            remainder.terms.insert(factors, coefficient);
             let mut remainder = derived(
                 graph,
                 remainder,
@@ -464,16 +466,16 @@ fn is_number(deriver: &mut Deriver, id: Id) -> bool {
     deriver.vanishes_opened(slope)
 }
 
-/// Whether a density is a sum of others with numbers as factors.
-fn depends(deriver: &mut Deriver, density: &[(Jet, Id)], others: &[Vec<(Jet, Id)>]) -> bool {
-    let jets = others.iter().flatten().chain(density).map(|(jet, _)| *jet);
+/// Whether a density is Σ number · density over `basis`: the weight of every jet has to agree.
+fn depends(deriver: &mut Deriver, density: &[(Jet, Id)], basis: &[Vec<(Jet, Id)>]) -> bool {
+    let jets = basis.iter().flatten().chain(density).map(|(jet, _)| *jet);
     let jets: BTreeSet<Jet> = jets.collect();
     let weight = |of: &[(Jet, Id)], jet: Jet| of.iter().find(|(j, _)| *j == jet).map(|(_, id)| *id);
-    let mut system = LinearSystem::new(deriver.graph, others.len());
+    let mut system = LinearSystem::new(deriver.graph, basis.len());
     for jet in jets {
-        let entries = others.iter().enumerate();
-        let entries = entries.filter_map(|(c, of)| Some((c, weight(of, jet)?)));
-        system.equation(deriver.graph, entries.collect(), weight(density, jet));
+        let factors = basis.iter().enumerate();
+        let factors = factors.filter_map(|(column, of)| Some((column, weight(of, jet)?)));
+        system.equation(deriver.graph, factors.collect(), weight(density, jet));
     }
     let solution = system.solve(deriver.graph);
     solution.is_some_and(|factors| factors.iter().all(|&(_, id)| is_number(deriver, id)))

@@ -24,8 +24,8 @@ pub type DirectTerm = Term<BalanceId, FieldId>;
 /// A term of L† or M0†, which take the adjoint fields of balances to fields.
 pub type AdjointTerm = Term<FieldId, BalanceId>;
 
-/// From M ∂t X − R = 0 expanded, one form a row: M0 (terms with one ∂t) and L (the others,
-/// moved to the right-hand side).
+/// The terms of M0 and L, from the expanded balances M ∂t X − R = 0, one form for each balance. Linear terms with one ∂t
+/// belong to M0. Those without ∂t belong to −L, so that their sign changes.
 pub fn linear_operator(graph: &mut Graph, forms: &Table<BalanceId, Form>) -> Vec<DirectTerm> {
     let mut terms = Vec::new();
     for (row, form) in forms.pairs() {

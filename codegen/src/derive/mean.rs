@@ -65,8 +65,8 @@ pub(super) fn multiplier(
     )
 }
 
-/// Whether L†ℓ = 0 and the boundary form vanishes, at k = 0; or L†ℓ is a multiple of the density of
-/// an integral already known to be conserved (a Jordan block: ∫u changes by ∫v, which stays zero).
+/// Whether L†ℓ = 0 and the boundary form vanishes, at k = 0. L†ℓ may also be a multiple of the density of an integral in
+/// `declared`, which is conserved: in a Jordan block ∫u changes by ∫v, which stays zero.
 pub(super) fn conserved(
     deriver: &mut Deriver,
     problem: &CaseProblem,

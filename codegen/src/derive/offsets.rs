@@ -120,9 +120,7 @@ mod tests {
     use super::{Offsets, offsets};
     use landau_contract::{BalanceId, FieldId, Id};
 
-    type Found = Offsets<BalanceId, FieldId>;
-
-    fn found(orders: &[Vec<Option<u8>>]) -> Option<Found> {
+    fn offsets_of(orders: &[Vec<Option<u8>>]) -> Option<Offsets<BalanceId, FieldId>> {
         offsets(&orders.iter().map(|row| row.clone().into()).collect())
     }
 
@@ -132,7 +130,7 @@ mod tests {
             columns: columns.to_vec().into(),
             conditions,
         };
-        assert_eq!(found(orders), Some(expected));
+        assert_eq!(offsets_of(orders), Some(expected));
     }
 
     #[test]
@@ -172,7 +170,7 @@ mod tests {
             vec![Some(1), Some(2), None],
             vec![None, Some(0), Some(2)],
         ];
-        let straight = found(&orders).expect("a determined system");
+        let straight = offsets_of(&orders).expect("a determined system");
         for rotation in 1..3 {
             let turned: Vec<Vec<Option<u8>>> = (0..3)
                 .map(|i| {
@@ -181,7 +179,7 @@ mod tests {
                         .collect()
                 })
                 .collect();
-            let turned = found(&turned).expect("a determined system");
+            let turned = offsets_of(&turned).expect("a determined system");
             for i in 0..3 {
                 let (row, column) = ((i + rotation) % 3, (i + 2 * rotation) % 3);
                 let (i, row) = (BalanceId::at(i), BalanceId::at(row));
@@ -194,6 +192,9 @@ mod tests {
 
     #[test]
     fn two_balances_for_one_field() {
-        assert_eq!(found(&[vec![Some(1), None], vec![Some(2), None]]), None);
+        assert_eq!(
+            offsets_of(&[vec![Some(1), None], vec![Some(2), None]]),
+            None
+        );
     }
 }

@@ -84,8 +84,8 @@ impl<'a> Opener<'a> {
 
     /// A partial derivative of a law, laws inside it opened too.
     fn partial(&mut self, graph: &mut Graph, atom: &LawAtom) -> Id {
-        if let Some(&known) = self.partials.get(atom) {
-            return known;
+        if let Some(&value) = self.partials.get(atom) {
+            return value;
         }
         let value = if let Some(field) = atom.index.position(|&order| order > 0) {
             let mut lower = atom.clone();

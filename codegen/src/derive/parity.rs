@@ -19,7 +19,7 @@ pub struct Parity {
 
 /// The parity of a model, or `None` where it has no such symmetry.
 ///
-/// `forms` are the balances, `conditions` those of the walls and on integrals (each with a sign of its own).
+/// `forms` are the balances, `conditions` those of the walls and on integrals (each may have either parity).
 pub fn parity(forms: &[Form], conditions: &[&Form], fields: usize) -> Option<Parity> {
     let unknowns = fields + forms.len() + conditions.len();
     let mut system: Vec<Vec<bool>> = Vec::new();

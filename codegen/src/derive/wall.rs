@@ -65,7 +65,7 @@ pub(super) struct Walls {
     pub reduced: Vec<(End, Reduced<FieldId>)>,
 }
 
-/// What the base's own boundary conditions say at each end: base atom → expression.
+/// The values that boundary conditions of the base state give its atoms at each end: (end, atom, expression).
 pub(super) type BaseRules = Vec<(End, (FieldId, u8), Id)>;
 
 /// Solves each base condition that is linear in its highest base derivative for it.
@@ -93,7 +93,7 @@ pub(super) fn base_rules(graph: &mut Graph, conditions: &[BaseCondition]) -> Bas
         if !graph.vanishes(curvature) || graph.vanishes(slope) {
             continue;
         }
-        // residual = slope · atom + rest
+        // residual = slope · atom + remainder, so that the condition says atom = −remainder/slope
         let atom = graph.base(field, order);
         let product = graph.mul(slope, atom);
         let remainder = graph.sub(condition.residual, product);

@@ -31,7 +31,7 @@ struct Expansion {
     jets: Monomial,
 }
 
-/// The rest of a term: base-state factors and jets.
+/// What multiplies the expansion in a term: base-state factors and jets.
 #[derive(Clone, PartialEq)]
 struct Outer {
     factors: Factors,
@@ -72,12 +72,13 @@ pub fn over_common_denominator(graph: &Graph, letters: &Letters, terms: &[Coeffi
             .cloned()
             .collect()
     };
-    let shared = |known: Factors, other: Factors| -> Factors {
-        let shared = known.into_iter().filter_map(|(base, e)| {
-            let (_, other) = other.iter().find(|(b, _)| *b == base)?;
-            Some((base, e.max(other.clone())))
-        });
-        shared.collect()
+    let shared = |left: Factors, right: Factors| -> Factors {
+        left.into_iter()
+            .filter_map(|(base, exponent)| {
+                let (_, exponent_right) = right.iter().find(|(b, _)| *b == base)?;
+                Some((base, exponent.max(exponent_right.clone())))
+            })
+            .collect()
     };
     let common = taken.iter().map(below).reduce(shared).unwrap_or_default();
     let writer = Writer { graph, letters };
@@ -90,14 +91,14 @@ pub fn over_common_denominator(graph: &Graph, letters: &Letters, terms: &[Coeffi
     let parts = taken
         .into_iter()
         .zip(terms)
-        .map(|((number, mut own), (_, what))| {
+        .map(|((number, mut factors), (_, what))| {
             for (base, exponent) in &common {
-                if let Some((_, e)) = own.iter_mut().find(|(b, _)| b == base) {
+                if let Some((_, e)) = factors.iter_mut().find(|(b, _)| b == base) {
                     *e -= exponent;
                 }
             }
-            own.retain(|(_, e)| *e != Rational::default());
-            writer.product(&number, &own, what.clone())
+            factors.retain(|(_, e)| *e != Rational::default());
+            writer.product(&number, &factors, what.clone())
         });
     let inside = Formula::sum(parts);
     Formula::product([letters.product(graph, &common), inside])
@@ -127,25 +128,37 @@ fn pieces(graph: &Graph, form: &Form, divisor: Id) -> Vec<Piece> {
     let holds_law = |id: Id| graph.any(id, |node| matches!(node, Node::BaseLaw(_)));
     let mut pieces = Vec::new();
     for (monomial, &coefficient) in &form.terms {
-        let (number, mut own) = factors(graph, coefficient);
-        let sum = own.iter().position(|(base, e)| {
+        let (number, mut factors_of_term) = factors(graph, coefficient);
+        let sum = factors_of_term.iter().position(|(base, e)| {
             e.is_one() && matches!(graph.node(*base), Node::Sum(..)) && holds_law(*base)
         });
         let Some(sum) = sum else {
-            pieces.push(Piece::new(graph, number, own, monomial, divisor));
+            pieces.push(Piece::new(
+                graph,
+                number,
+                factors_of_term,
+                monomial,
+                divisor,
+            ));
             continue;
         };
-        let (sum, _) = own.remove(sum);
+        let (sum, _) = factors_of_term.remove(sum);
         let Node::Sum(constant, terms) = graph.node(sum) else {
             continue;
         };
         if *constant != Rational::default() {
             let scaled = number.clone() * constant;
-            pieces.push(Piece::new(graph, scaled, own.clone(), monomial, divisor));
+            pieces.push(Piece::new(
+                graph,
+                scaled,
+                factors_of_term.clone(),
+                monomial,
+                divisor,
+            ));
         }
         for (term, scale) in terms {
             let (inside, mut within) = factors(graph, *term);
-            within.extend(own.clone());
+            within.extend(factors_of_term.clone());
             let scaled = number.clone() * scale * inside;
             pieces.push(Piece::new(graph, scaled, within, monomial, divisor));
         }
@@ -183,7 +196,7 @@ impl Piece {
             ),
             Some((position, atom)) => {
                 let (id, _) = factors.remove(position);
-                let jets = take_own(atom, &mut jets);
+                let jets = take_jets_of(atom, &mut jets);
                 (
                     Some(atom.law),
                     Expansion {
@@ -272,21 +285,19 @@ impl Writer<'_> {
         } else {
             Rational::one()
         };
-        let common = match group
-            .outer
-            .iter()
-            .all(|term| term.of.factors == first.of.factors)
-        {
-            true if !group.expansions.is_empty() => first.of.factors.clone(),
-            _ => Factors::new(),
+        let agree = |term: &Scaled<Outer>| term.of.factors == first.of.factors;
+        let common = if !group.expansions.is_empty() && group.outer.iter().all(agree) {
+            first.of.factors.clone()
+        } else {
+            Factors::new()
         };
         let outer = group.outer.iter().map(|term| {
-            let own: &[_] = if common.is_empty() {
+            let factors: &[_] = if common.is_empty() {
                 &term.of.factors
             } else {
                 &[]
             };
-            self.product(&(&term.number * &sign), own, self.jets(&term.of.jets))
+            self.product(&(&term.number * &sign), factors, self.jets(&term.of.jets))
         });
         let outer = Formula::sum(outer);
         if group.expansions.is_empty() {
@@ -307,13 +318,9 @@ impl Writer<'_> {
             (_, outer) => (sign, outer),
         };
         let base = self.letters.product(self.graph, &common);
-        let rest = [base, Formula::sum(expansions), outer];
-        let (front, rest) = self.over(
-            &number,
-            group.divided.then_some(divisor),
-            &Formula::product(rest),
-        );
-        Formula::product([front, rest])
+        let product = Formula::product([base, Formula::sum(expansions), outer]);
+        let (front, product) = self.over(&number, group.divided.then_some(divisor), &product);
+        Formula::product([front, product])
     }
 
     /// number/divisor, and what it stands before: 2/n⁰ rather than 1/n⁰ 2.
@@ -323,15 +330,15 @@ impl Writer<'_> {
         };
         let (sign, what) = match what {
             Formula::Negative(inside) => (true, (**inside).clone()),
-            other => (false, other.clone()),
+            positive => (false, positive.clone()),
         };
-        let (mut above, mut rest) = (number.abs(), what);
-        if let Formula::Product(factors) = &rest
-            && let [Formula::Number(value), others @ ..] = factors.as_slice()
+        let (mut above, mut after) = (number.abs(), what);
+        if let Formula::Product(factors) = &after
+            && let [Formula::Number(value), factors @ ..] = factors.as_slice()
             && value.is_integer()
         {
             above *= value;
-            rest = Formula::product(others.iter().cloned());
+            after = Formula::product(factors.iter().cloned());
         }
         let below = self.letters.formula(self.graph, divisor);
         let front = if above.is_integer() {
@@ -342,7 +349,7 @@ impl Writer<'_> {
                 Formula::Number(above),
             ])
         };
-        (front.signed(number.is_negative() != sign), rest)
+        (front.signed(number.is_negative() != sign), after)
     }
 
     /// number · Π factors · Π what
@@ -386,7 +393,7 @@ fn factors(graph: &Graph, id: Id) -> (Rational, Factors) {
 fn gather<K: PartialEq, V>(pairs: impl Iterator<Item = (K, V)>) -> Vec<(K, Vec<V>)> {
     let mut gathered: Vec<(K, Vec<V>)> = Vec::new();
     for (key, value) in pairs {
-        match gathered.iter_mut().find(|(known, _)| *known == key) {
+        match gathered.iter_mut().find(|(present, _)| *present == key) {
             Some((_, values)) => values.push(value),
             None => gathered.push((key, vec![value])),
         }
@@ -396,8 +403,8 @@ fn gather<K: PartialEq, V>(pairs: impl Iterator<Item = (K, V)>) -> Vec<(K, Vec<V
 
 /// Removes from `jets` one jet for each field that the law is differentiated by, the lowest
 /// derivative first: what the Taylor series of the law brought with it.
-fn take_own(atom: &LawAtom, jets: &mut Monomial) -> Monomial {
-    let mut own = Monomial::new();
+fn take_jets_of(atom: &LawAtom, jets: &mut Monomial) -> Monomial {
+    let mut taken = Monomial::new();
     for (field, &order) in atom.index.pairs() {
         for _ in 0..order {
             let of_field = |j: &&Jet| j.of == field;
@@ -407,10 +414,10 @@ fn take_own(atom: &LawAtom, jets: &mut Monomial) -> Monomial {
                 .min_by_key(|j| j.t + j.x + j.y)
                 .copied();
             if let Some(position) = lowest.and_then(|jet| jets.iter().position(|j| *j == jet)) {
-                own.push(jets.remove(position));
+                taken.push(jets.remove(position));
             }
         }
     }
-    own.sort_unstable();
-    own
+    taken.sort_unstable();
+    taken
 }

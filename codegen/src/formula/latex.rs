@@ -127,7 +127,7 @@ fn aligned(lines: &[Formula]) -> String {
     for (index, line) in lines.iter().enumerate() {
         let line = latex(line);
         let line = match line.strip_prefix('-') {
-            Some(rest) => format!("-\\,{rest}"),
+            Some(size) => format!("-\\,{size}"),
             None if index > 0 => format!("+\\,{line}"),
             None => line,
         };
@@ -192,7 +192,7 @@ fn greek_command(letter: char) -> Option<String> {
         ('ϑ', "vartheta"),
         ('ς', "varsigma"),
     ];
-    let name = match CURLY.iter().find(|(other, _)| *other == letter) {
+    let name = match CURLY.iter().find(|(curly, _)| *curly == letter) {
         Some((_, name)) => *name,
         None => greek(letter)?,
     };
@@ -200,8 +200,8 @@ fn greek_command(letter: char) -> Option<String> {
         Some(_) => Some(format!("\\{name}")),
         // Capitals that look like Latin ones have no command.
         None if "ΓΔΘΛΞΠΣΥΦΨΩ".contains(letter) => {
-            let (first, rest) = name.split_at(1);
-            Some(format!("\\{}{rest}", first.to_uppercase()))
+            let (initial, ending) = name.split_at(1);
+            Some(format!("\\{}{ending}", initial.to_uppercase()))
         }
         None => None,
     }
@@ -237,9 +237,9 @@ fn call(function: &str, argument: &Formula) -> String {
     let name = match function {
         "exp" | "log" | "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" => format!("\\{function}"),
         "atan" => "\\arctan".to_owned(),
-        other => match other.strip_prefix('∂') {
+        operator => match operator.strip_prefix('∂') {
             Some(coordinate) => format!("\\partial_{{{}}}", letter(coordinate)),
-            None => format!("\\mathrm{{{other}}}"),
+            None => format!("\\mathrm{{{operator}}}"),
         },
     };
     format!("{name}{}", bracketed(&latex(argument)))
@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn letters() {
-        let found = ["phi", "φ", "ϕ2", "Γ", "Α", "theta_w", "eta1"].map(letter);
+        let written = ["phi", "φ", "ϕ2", "Γ", "Α", "theta_w", "eta1"].map(letter);
         let expected = [
             "\\phi",
             "\\varphi",
@@ -261,7 +261,7 @@ mod tests {
             "\\mathrm{theta\\_w}",
             "\\eta_{1}",
         ];
-        assert_eq!(found, expected);
+        assert_eq!(written, expected);
     }
 
     #[test]

@@ -114,7 +114,7 @@ impl Formula {
         for term in terms {
             match term {
                 Formula::Sum(inner) => flat.extend(inner),
-                other => flat.push(other),
+                term => flat.push(term),
             }
         }
         match flat.len() {
@@ -133,12 +133,12 @@ impl Formula {
                     negative = !negative;
                     *inside
                 }
-                other => other,
+                factor => factor,
             };
             match factor {
                 Formula::Number(one) if one.is_one() => {}
                 Formula::Product(inner) => flat.extend(inner),
-                other => flat.push(other),
+                factor => flat.push(factor),
             }
         }
         let product = match flat.len() {
@@ -194,11 +194,11 @@ impl Formula {
     fn terms(&self) -> Vec<(bool, &Formula)> {
         let list = match self {
             Formula::Sum(terms) => terms.iter().collect(),
-            other => vec![other],
+            line => vec![line],
         };
         let signed = list.into_iter().map(|formula| match formula {
             Formula::Negative(inside) => (true, &**inside),
-            other => (false, other),
+            positive => (false, positive),
         });
         signed.collect()
     }

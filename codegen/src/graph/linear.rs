@@ -1,4 +1,4 @@
-//! Linear equations with expressions as coefficients, solved exactly; zero is decided as everywhere.
+//! Linear equations with expressions as coefficients, solved exactly. A pivot is nonzero by [`Graph::vanishes`].
 
 use super::{Graph, Id};
 
@@ -11,7 +11,7 @@ pub struct LinearSystem {
 }
 
 impl LinearSystem {
-    /// No equation yet for so many unknowns.
+    /// A system without equations.
     pub fn new(graph: &mut Graph, unknowns: usize) -> Self {
         LinearSystem {
             unknowns,
@@ -20,7 +20,8 @@ impl LinearSystem {
         }
     }
 
-    /// Adds Σ coefficient · unknown = `right`, the coefficients by position, those of one position summed.
+    /// Adds Σ coefficient · unknown = `right` (zero if `None`), from pairs of an unknown's position and a coefficient.
+    /// Coefficients of one unknown are summed.
     pub fn equation(
         &mut self,
         graph: &mut Graph,
@@ -35,28 +36,28 @@ impl LinearSystem {
         self.rows.push(row);
     }
 
-    /// Gauss–Jordan: the unknowns that the equations determine with their values, those that are left open being
-    /// zero; nothing where the equations contradict each other.
+    /// Solves by Gauss–Jordan elimination. The answer lists each unknown that has a pivot, with its value where the
+    /// unknowns without a pivot are zero; `None` if the equations contradict each other.
     pub fn solve(mut self, graph: &mut Graph) -> Option<Vec<(usize, Id)>> {
         let mut pivots = Vec::new();
         for column in 0..self.unknowns {
             let rank = pivots.len();
             let mut open = rank..self.rows.len();
-            let Some(found) = open.find(|&r| !graph.vanishes(self.rows[r][column])) else {
+            let Some(nonzero) = open.find(|&r| !graph.vanishes(self.rows[r][column])) else {
                 continue;
             };
-            self.rows.swap(rank, found);
+            self.rows.swap(rank, nonzero);
             let pivot = self.rows[rank][column];
             for entry in &mut self.rows[rank] {
                 *entry = graph.divide_terms(*entry, pivot);
             }
-            let row = self.rows[rank].clone();
-            for (r, other) in self.rows.iter_mut().enumerate() {
-                let factor = other[column];
+            let pivot_row = self.rows[rank].clone();
+            for (r, row) in self.rows.iter_mut().enumerate() {
+                let factor = row[column];
                 if r == rank || graph.vanishes(factor) {
                     continue;
                 }
-                for (entry, &by) in other.iter_mut().zip(&row) {
+                for (entry, &by) in row.iter_mut().zip(&pivot_row) {
                     let product = graph.mul(factor, by);
                     *entry = graph.sub(*entry, product);
                 }
@@ -95,9 +96,9 @@ mod tests {
             let quotient = graph.div(b, below);
             graph.neg(quotient)
         }];
-        for ((unknown, found), expected) in solution.into_iter().zip(expected) {
-            let rest = graph.sub(found, expected);
-            assert!(graph.vanishes(rest), "unknown {unknown}");
+        for ((unknown, value), expected) in solution.into_iter().zip(expected) {
+            let difference = graph.sub(value, expected);
+            assert!(graph.vanishes(difference), "unknown {unknown}");
         }
     }
 

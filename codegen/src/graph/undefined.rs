@@ -48,7 +48,7 @@ mod tests {
     use crate::graph::{FieldId, Function, Graph, Node, Rational, Variable};
     use num_traits::One;
 
-    /// What limits would give other values to is never the number zero.
+    /// 0 · (1/0), 1/0 − 1/0 and the like stay expressions: a limit may give them any value, so none is the number zero.
     #[test]
     fn no_constructor_loses_a_pole() {
         let mut graph = Graph::new();

@@ -48,7 +48,7 @@ impl Graph {
                 let mut total = 1;
                 for (base, exponent) in factors {
                     let base = values[base]?;
-                    // b^e = b^⌊e⌋ · root, the root an atom of its own
+                    // b^e = b^⌊e⌋ · root, the root being an atom
                     let whole = exponent.floor();
                     let size = whole.numer().abs().to_u64()?;
                     let signed = if whole.is_negative() {
@@ -155,8 +155,8 @@ mod tests {
             (ab, -two),
             (bb, -one),
         ];
-        let rest = graph.sum(parts.clone());
-        assert!(graph.vanishes(rest));
+        let difference = graph.sum(parts.clone());
+        assert!(graph.vanishes(difference));
         let short = graph.sum(parts[..3].to_vec());
         assert!(!graph.vanishes(short));
         // 1/(a − a) is no zero.
@@ -168,7 +168,7 @@ mod tests {
         let half = Rational::new(1.into(), 2.into());
         let root = graph.pow(a, half);
         let square = graph.mul(root, root);
-        let rest = graph.sub(square, a);
-        assert!(graph.vanishes(rest));
+        let difference = graph.sub(square, a);
+        assert!(graph.vanishes(difference));
     }
 }

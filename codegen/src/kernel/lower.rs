@@ -18,7 +18,7 @@ struct Builder<'a> {
     lowering: Lowering<'a>,
     operations: Vec<Operation>,
     /// Equal operations are one register.
-    known: HashMap<String, Register>,
+    registers: HashMap<String, Register>,
     values: HashMap<Id, Register>,
 }
 
@@ -29,7 +29,7 @@ impl Lowering<'_> {
             graph,
             lowering: self,
             operations: Vec::new(),
-            known: HashMap::new(),
+            registers: HashMap::new(),
             values: HashMap::new(),
         };
         let order = graph.topological(outputs);
@@ -78,12 +78,12 @@ fn unshared_cost(graph: &Graph, id: Id, written: &HashMap<Id, usize>) -> usize {
 impl Builder<'_> {
     fn push(&mut self, operation: Operation) -> Register {
         let key = format!("{operation:?}");
-        if let Some(&known) = self.known.get(&key) {
-            return known;
+        if let Some(&register) = self.registers.get(&key) {
+            return register;
         }
         let register = self.operations.len();
         self.operations.push(operation);
-        self.known.insert(key, register);
+        self.registers.insert(key, register);
         register
     }
 
@@ -209,7 +209,7 @@ impl Builder<'_> {
     }
 }
 
-/// Removes operations that no output needs, keeping the order of the others.
+/// Removes the operations that no output needs; those it keeps stay in order.
 fn drop_unused(kernel: &mut Kernel) {
     let count = kernel.operations.len();
     let mut needed = vec![false; count];

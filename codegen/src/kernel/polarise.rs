@@ -9,11 +9,11 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 pub(super) fn form_tables(forms: &[Table<BalanceId, Form>]) -> (Vec<Jet>, Vec<Id>) {
     let mut jets = BTreeSet::new();
     let mut coefficients = Vec::new();
-    let mut known = std::collections::HashSet::new();
+    let mut listed = std::collections::HashSet::new();
     for form in forms.iter().flat_map(|rows| rows.iter()) {
         for (monomial, &coefficient) in &form.terms {
             jets.extend(monomial.iter().copied());
-            if known.insert(coefficient) {
+            if listed.insert(coefficient) {
                 coefficients.push(coefficient);
             }
         }
@@ -55,7 +55,8 @@ pub(super) fn polarise(
     }
 }
 
-/// Σ over permutations; sums over fewer jets are shared between monomials.
+/// Σ over permutations σ of Π q_i[argument σ(i)], by the choice of the last jet's argument. `memo` shares the sums over
+/// fewer jets between monomials.
 fn permutation_sum(
     graph: &mut Graph,
     monomial: &[Jet],
@@ -63,18 +64,18 @@ fn permutation_sum(
     place: &HashMap<Jet, usize>,
     memo: &mut BTreeMap<(Monomial, Vec<usize>), Id>,
 ) -> Id {
-    let Some((last, rest)) = monomial.split_last() else {
+    let Some((last, before)) = monomial.split_last() else {
         return graph.one();
     };
     let key = (monomial.to_vec(), arguments.to_vec());
-    if let Some(&known) = memo.get(&key) {
-        return known;
+    if let Some(&sum) = memo.get(&key) {
+        return sum;
     }
     let mut parts = Vec::new();
     for (i, &argument) in arguments.iter().enumerate() {
-        let mut others = arguments.to_vec();
-        others.remove(i);
-        let inner = permutation_sum(graph, rest, &others, place, memo);
+        let mut arguments_left = arguments.to_vec();
+        arguments_left.remove(i);
+        let inner = permutation_sum(graph, before, &arguments_left, place, memo);
         let slot = graph.slot(argument, place[last]);
         parts.push((graph.mul(inner, slot), Rational::one()));
     }

@@ -134,9 +134,9 @@ impl Reader<'_> {
                 })?;
                 Ok(MeanItem::Unknown(name, condition))
             }
-            other => Err(unknown_item(
+            word => Err(unknown_item(
                 &keyword.location,
-                other,
+                word,
                 &["conserved", "gauge", "unknown"],
             )),
         }

@@ -81,10 +81,10 @@ impl Reader<'_> {
                 tree.typical = Some(self.typical(&content)?);
                 self.finished(&content, "`}`")
             }
-            other => {
+            word => {
                 let mut items = MODEL_ITEMS.to_vec();
                 items.push(MEAN);
-                Err(unknown_item(&keyword.location, other, &items))
+                Err(unknown_item(&keyword.location, word, &items))
             }
         }
     }
@@ -104,7 +104,7 @@ impl Reader<'_> {
                 "law" => self
                     .definition(input, true)
                     .map(|item| tree.definitions.push(item)),
-                other => Err(unknown_item(&keyword.location, other, &LAW_ITEMS)),
+                word => Err(unknown_item(&keyword.location, word, &LAW_ITEMS)),
             }
         });
         tree

@@ -57,7 +57,7 @@ pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
         file,
         text,
         characters: text.char_indices().peekable(),
-        found: Vec::new(),
+        mistakes: Vec::new(),
         open: Vec::new(),
         pairs: Vec::new(),
         first_long_text: None,
@@ -65,7 +65,7 @@ pub fn check(file: usize, text: &str) -> Vec<Diagnostic> {
     if scan.run().is_some() {
         scan.end();
     }
-    scan.found
+    scan.mistakes
 }
 
 /// Names of the periodic and of the bounded coordinate as the block `coordinates` of a text declares them, as far as
@@ -89,7 +89,7 @@ struct Scan<'a> {
     file: usize,
     text: &'a str,
     characters: Peekable<CharIndices<'a>>,
-    found: Vec<Diagnostic>,
+    mistakes: Vec<Diagnostic>,
     /// Brackets that are open.
     open: Vec<(usize, char)>,
     /// Braces that are closed: where each opens and closes.
@@ -99,10 +99,10 @@ struct Scan<'a> {
 }
 
 impl Scan<'_> {
-    /// Reads on to the end; `None` where a mistake says nothing sure of what follows it.
+    /// Reads on to the end; `None` after a mistake that leaves the meaning of the text behind it open.
     fn run(&mut self) -> Option<()> {
         while let Some((position, character)) = self.characters.next() {
-            if self.found.len() >= MOST_MISTAKES {
+            if self.mistakes.len() >= MOST_MISTAKES {
                 return None;
             }
             let next = self.characters.peek().map(|&(_, c)| c);
@@ -132,7 +132,7 @@ impl Scan<'_> {
 
     fn report(&mut self, position: usize, message: impl Into<String>, expected: impl Into<String>) {
         let location = self.at(position, 1);
-        self.found
+        self.mistakes
             .push(Diagnostic::new(location, message, expected));
     }
 
@@ -155,7 +155,7 @@ impl Scan<'_> {
         self.open.clear();
         let message = "this comment is never closed";
         let place = self.at(position, 2);
-        self.found
+        self.mistakes
             .push(Diagnostic::new(place, message, "`*/` further down"));
     }
 
@@ -201,7 +201,7 @@ impl Scan<'_> {
     fn opens(&mut self, position: usize, character: char) -> Option<()> {
         self.open.push((position, character));
         if self.open.len() > DEEPEST_NESTING {
-            self.found.push(too_deep(self.at(position, 1)));
+            self.mistakes.push(too_deep(self.at(position, 1)));
             return None;
         }
         Some(())
@@ -220,14 +220,14 @@ impl Scan<'_> {
                 let expected = format!("`{}`, for the `{opening}` opened before", closing(opening));
                 let hint = format!("the `{opening}` stands in line {}", self.line(start));
                 let place = self.at(position, 1);
-                self.found
+                self.mistakes
                     .push(Diagnostic::new(place, message, expected).hint(hint));
             }
             None => {
                 let message = format!("`{character}` closes nothing");
                 let hint = self.misplaced_brace();
                 let place = self.at(position, 1);
-                self.found.push(
+                self.mistakes.push(
                     Diagnostic::new(place, message, "no bracket is open here").maybe_hint(hint),
                 );
             }
@@ -281,7 +281,7 @@ impl Scan<'_> {
                     .maybe_hint(hint.map(|(_, hint)| self.named(hint)))
             }
         };
-        self.found.push(mistake);
+        self.mistakes.push(mistake);
     }
 
     /// A hint with the names of the coordinates for `{x}` and `{y}`.
@@ -298,7 +298,7 @@ impl Scan<'_> {
             let expected = format!("a matching `{}` further down", closing(opening));
             let hint = self.misplaced_brace();
             let place = self.at(start, 1);
-            self.found
+            self.mistakes
                 .push(Diagnostic::new(place, message, expected).maybe_hint(hint));
         }
     }

@@ -1,6 +1,6 @@
 //! Spec text → syntax tree.
 //!
-//! Tokens are Rust's (so that `proc_macro2` gives places in the text), the grammar is our own. A
+//! Tokens are Rust's (so that `proc_macro2` gives places in the text), the grammar is this module's. A
 //! mistake ends the statement it stands in; parsing goes on with the next, so that one run reports
 //! many.
 
@@ -156,7 +156,7 @@ impl Reader<'_> {
                     proc_macro2::Delimiter::Bracket => "[".to_owned(),
                     _ => "(".to_owned(),
                 },
-                other => other.to_string(),
+                token => token.to_string(),
             });
             format!("`{}` is not expected here", token.unwrap_or_default())
         };
@@ -192,7 +192,7 @@ impl Reader<'_> {
         let _ = input.parse::<proc_macro2::TokenTree>();
     }
 
-    /// Consumes the rest of a statement: to just after the next `;` or `{ … }`.
+    /// Skips to the end of a statement: to just after the next `;` or `{ … }`.
     fn recover(&self, input: ParseStream) {
         while !input.is_empty() {
             let ends = input.peek(syn::Token![;]) || input.peek(syn::token::Brace);
@@ -249,7 +249,7 @@ impl Reader<'_> {
         let mut cursor = input.cursor();
         for expected in mark.chars() {
             match cursor.punct() {
-                Some((punct, rest)) if punct.as_char() == expected => cursor = rest,
+                Some((punct, after)) if punct.as_char() == expected => cursor = after,
                 _ => return Err(self.missing(input, mark, &format!("`{mark}`"))),
             }
         }
@@ -262,8 +262,8 @@ impl Reader<'_> {
     fn peek_punctuation(&self, input: ParseStream, mark: &str) -> bool {
         let mut cursor = input.cursor();
         mark.chars().all(|expected| match cursor.punct() {
-            Some((punct, rest)) if punct.as_char() == expected => {
-                cursor = rest;
+            Some((punct, after)) if punct.as_char() == expected => {
+                cursor = after;
                 true
             }
             _ => false,

@@ -6,7 +6,7 @@ use proc_macro2::{TokenStream, TokenTree};
 /// Brackets, bars and expressions inside one another.
 pub(super) const DEEPEST_NESTING: usize = 64;
 
-/// The mistake of a bracket, a bar or an expression inside too many others.
+/// The mistake of brackets, bars or expressions that are nested too deeply.
 pub(super) fn too_deep(location: Location) -> Diagnostic {
     let message = "brackets are nested too deeply";
     let expected = format!("at most {DEEPEST_NESTING} levels");
