@@ -44,7 +44,7 @@ pub struct Diagnostic {
     pub expected: String,
     /// What to try.
     pub hint: Option<String>,
-    /// The name that stands for nothing, if that is the mistake. It is told once in a file.
+    /// The undeclared name, if that is the mistake. It is reported once for a file.
     pub unknown: Option<String>,
 }
 
@@ -64,7 +64,7 @@ impl Diagnostic {
         }
     }
 
-    /// Says that the mistake is a name that stands for nothing.
+    /// Marks the mistake as that of an undeclared name.
     pub fn about_unknown(mut self, name: &str) -> Self {
         self.unknown = Some(name.to_owned());
         self

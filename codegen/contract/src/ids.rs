@@ -8,7 +8,7 @@ use std::ops::{Deref, DerefMut, Index, IndexMut};
 
 /// A position in one of a model's lists.
 pub trait Id: Copy + Eq + Ord + Hash + Debug {
-    /// What stands at a position.
+    /// The element at a position.
     fn at(position: usize) -> Self;
     /// The position.
     fn index(self) -> usize;

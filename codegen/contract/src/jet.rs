@@ -2,10 +2,11 @@
 
 use crate::ids::FieldId;
 
-/// ∂x^x |∂x|^absx ∂y^y ∂t^t of a field; in L†, of the adjoint field that a balance has.
+/// The derivative ∂x^x |∂x|^absx ∂y^y ∂t^t of a field. In L† it is a derivative of an adjoint field, of which every
+/// balance has one.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Jet<V = FieldId> {
-    /// What is derived.
+    /// The field, or the balance whose adjoint field is meant.
     pub of: V,
     /// Powers of ∂t.
     pub t: u8,
@@ -29,7 +30,7 @@ impl<V> Jet<V> {
         }
     }
 
-    /// Whether a y-dependent base state has this jet (no x or t in it).
+    /// Whether the jet can be nonzero in a base state, which depends on y alone: no derivative along x or t.
     pub fn is_base(&self) -> bool {
         self.t == 0 && self.x == 0 && self.absx == 0
     }
@@ -45,7 +46,7 @@ impl<V> Jet<V> {
         (jet, pairs % 2 == 1)
     }
 
-    /// The jet without its x-derivatives: what modes of every wavenumber share.
+    /// The jet without ∂x and |∂x|, which multiply a mode e^{ikx} by powers of i k and |k|.
     pub fn profile(self) -> Self {
         Jet {
             x: 0,
@@ -54,7 +55,7 @@ impl<V> Jet<V> {
         }
     }
 
-    /// The same derivative of something else.
+    /// The same derivative of `of`.
     pub fn about<W>(self, of: W) -> Jet<W> {
         let Jet { t, x, absx, y, .. } = self;
         Jet { of, t, x, absx, y }
@@ -73,7 +74,7 @@ impl<V> Jet<V> {
     }
 }
 
-/// Shorthand for literals in emitted code.
+/// A jet from its parts, for literals in emitted code.
 pub const fn jet<V>(of: V, t: u8, x: u8, absx: u8, y: u8) -> Jet<V> {
     Jet { of, t, x, absx, y }
 }

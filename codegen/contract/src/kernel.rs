@@ -57,7 +57,7 @@ pub struct Kernel {
     pub operations: Cow<'static, [Operation]>,
     /// The registers that are the results.
     pub outputs: Cow<'static, [Register]>,
-    /// Arithmetic operations of the expressions as written, nothing shared.
+    /// Arithmetic operations of the expressions as written, before common subexpressions are shared.
     pub unshared: usize,
 }
 

@@ -1,4 +1,5 @@
-//! The outputs of kernels, one after another: the generator writes and the solver reads through this file alone.
+//! The order of the outputs of kernels. The generator writes and the solver reads those that are more than a list of
+//! numbers by the functions of this file. The plain lists are described at [`KernelId`].
 
 use crate::ids::{BalanceId, BaseRowId, Id, Table};
 use crate::jet::{End, Jet};
@@ -23,7 +24,7 @@ impl<T> Linearised<T> {
     }
 }
 
-/// Values taken off the front, one shape after another.
+/// Reads outputs from the first to the last, one shape after another.
 struct Reader<'a> {
     unread: &'a [f64],
 }
@@ -47,14 +48,14 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// [`KernelId::Base`], [`KernelId::BaseConditions`]: residuals with their derivatives.
+/// Outputs of [`KernelId::Base`] and [`KernelId::BaseConditions`]: each residual, then its derivatives.
 pub fn write_linearised<T>(rows: Vec<Linearised<T>>) -> Vec<T> {
     let mut out = Vec::new();
     rows.into_iter().for_each(|row| row.write(&mut out));
     out
 }
 
-/// One row of the base problem: [`KernelId::Base`].
+/// One row of the base problem, from the outputs of [`KernelId::Base`].
 pub fn read_base_row(
     rows: &Table<BaseRowId, BaseRowInfo>,
     row: BaseRowId,
@@ -68,7 +69,8 @@ pub fn read_base_row(
     reader.linearised(&rows[row].jets)
 }
 
-/// The conditions of the base state at one end: [`KernelId::BaseConditions`].
+/// The conditions of the base state at one end, each with its jets, from the outputs of [`KernelId::BaseConditions`] at
+/// that end.
 pub fn read_base_conditions<'a>(
     case: &'a CaseInfo,
     end: End,
@@ -86,7 +88,7 @@ pub fn read_base_conditions<'a>(
         .collect()
 }
 
-/// [`KernelId::BaseIntegrals`]: integrands with their derivatives, each with the prescribed value.
+/// Outputs of [`KernelId::BaseIntegrals`]: each integrand, its derivatives, the prescribed value of its integral.
 pub fn write_integrals<T>(integrals: Vec<(Linearised<T>, T)>) -> Vec<T> {
     let mut out = Vec::new();
     for (integrand, prescribed) in integrals {
@@ -96,7 +98,8 @@ pub fn write_integrals<T>(integrals: Vec<(Linearised<T>, T)>) -> Vec<T> {
     out
 }
 
-/// Integrand and prescribed value of one integral: [`KernelId::BaseIntegrals`].
+/// Integrand and prescribed value of the integral at `index`, from the outputs of [`KernelId::BaseIntegrals`] at one
+/// point.
 pub fn read_integral(
     integrals: &[Vec<BaseJet>],
     index: usize,
@@ -110,63 +113,74 @@ pub fn read_integral(
     (reader.linearised(&integrals[index]), reader.number())
 }
 
-/// [`KernelId::Conditions`], [`KernelId::AdjointConditions`]: the coefficients of each condition.
+/// Outputs of [`KernelId::Conditions`] and [`KernelId::AdjointConditions`]: the coefficients of each condition.
 pub fn write_conditions<T>(conditions: Vec<Vec<T>>) -> Vec<T> {
     conditions.into_iter().flatten().collect()
 }
 
-/// Each condition with its monomials and their coefficients: [`KernelId::Conditions`] at the lower and the upper end.
+/// Each condition with its monomials and their coefficients, from the outputs of [`KernelId::Conditions`] at the lower and
+/// at the upper end.
 pub fn read_conditions<'a>(
     conditions: &'a [ConditionInfo],
     out: [&'a [f64]; 2],
 ) -> impl Iterator<Item = (End, Vec<(&'a [Jet], f64)>)> {
-    let mut readers = out.map(|unread| Reader { unread });
+    let mut ends = EndsReader::new(out);
     conditions.iter().map(move |condition| {
-        let count = condition.monomials.len();
-        let [lower, upper] = readers.each_mut().map(|reader| reader.take(count));
-        let values = if condition.end == End::Lower {
-            lower
-        } else {
-            upper
-        };
+        let values = ends.take(condition.end, condition.monomials.len());
         let monomials = condition.monomials.iter().map(Vec::as_slice);
-        (
-            condition.end,
-            monomials.zip(values.iter().copied()).collect(),
-        )
+        (condition.end, monomials.zip(values).collect())
     })
 }
 
-/// Each adjoint condition with its jets and their coefficients: [`KernelId::AdjointConditions`] at the lower and the
-/// upper end.
+/// Each adjoint condition with its jets and their coefficients, from the outputs of [`KernelId::AdjointConditions`] at the
+/// lower and at the upper end.
 pub fn read_adjoint_conditions<'a>(
     conditions: &'a [AdjointConditionInfo],
     out: [&'a [f64]; 2],
 ) -> impl Iterator<Item = (End, Vec<(Jet<BalanceId>, f64)>)> {
-    let mut readers = out.map(|unread| Reader { unread });
+    let mut ends = EndsReader::new(out);
     conditions.iter().map(move |condition| {
-        let count = condition.jets.len();
-        let [lower, upper] = readers.each_mut().map(|reader| reader.take(count));
-        let values = if condition.end == End::Lower {
-            lower
-        } else {
-            upper
-        };
+        let values = ends.take(condition.end, condition.jets.len());
         let jets = condition.jets.iter().copied();
-        (condition.end, jets.zip(values.iter().copied()).collect())
+        (condition.end, jets.zip(values).collect())
     })
+}
+
+/// Reads the outputs of one kernel at both ends. Every condition has outputs at both, and means one of them.
+struct EndsReader<'a> {
+    lower: Reader<'a>,
+    upper: Reader<'a>,
+}
+
+impl<'a> EndsReader<'a> {
+    fn new([lower, upper]: [&'a [f64]; 2]) -> Self {
+        EndsReader {
+            lower: Reader { unread: lower },
+            upper: Reader { unread: upper },
+        }
+    }
+
+    /// The next `count` outputs at `end`.
+    fn take(&mut self, end: End, count: usize) -> impl Iterator<Item = f64> + use<'a> {
+        let (lower, upper) = (self.lower.take(count), self.upper.take(count));
+        let values = match end {
+            End::Lower => lower,
+            End::Upper => upper,
+        };
+        values.iter().copied()
+    }
 }
 
 /// The weights of a closure of the problems at k = 0.
 #[derive(Clone, Debug)]
 pub struct ClosureWeights<T> {
-    /// Of the jets in ∫ density = 0.
+    /// Weights of the jets in ∫ density dy = 0.
     pub density: Vec<T>,
-    /// Of the balances that the multiplier enters.
+    /// Weights with which the multiplier enters balances.
     pub column: Vec<T>,
 }
 
-/// [`KernelId::Closures`]
+/// Outputs of [`KernelId::Closures`]: of each closure its density, then its column.
 pub fn write_closures<T>(closures: Vec<ClosureWeights<T>>) -> Vec<T> {
     let weights = closures.into_iter();
     weights
@@ -174,7 +188,7 @@ pub fn write_closures<T>(closures: Vec<ClosureWeights<T>>) -> Vec<T> {
         .collect()
 }
 
-/// The weights of one closure: [`KernelId::Closures`].
+/// The weights of the closure at `index`, from the outputs of [`KernelId::Closures`] at one point.
 pub fn read_closure(closures: &[ClosureInfo], index: usize, out: &[f64]) -> ClosureWeights<f64> {
     let mut reader = Reader { unread: out };
     let mut weights = |info: &ClosureInfo| ClosureWeights {
@@ -187,7 +201,7 @@ pub fn read_closure(closures: &[ClosureInfo], index: usize, out: &[f64]) -> Clos
     weights(&closures[index])
 }
 
-/// What the amplitude measures.
+/// The quantity that the amplitude measures, which fixes the size of a mode.
 #[derive(Clone, Debug)]
 pub enum Measure<T> {
     /// ∫ Σ w|q|² dy = value
@@ -206,7 +220,7 @@ pub enum Measure<T> {
     },
 }
 
-/// [`KernelId::Amplitude`]
+/// Outputs of [`KernelId::Amplitude`]: weights and value, or value and place.
 pub fn write_measure<T>(measure: Measure<T>) -> Vec<T> {
     match measure {
         Measure::Integral { mut weights, value } => {
@@ -217,7 +231,7 @@ pub fn write_measure<T>(measure: Measure<T>) -> Vec<T> {
     }
 }
 
-/// [`KernelId::Amplitude`]
+/// The measure of the amplitude, from the outputs of [`KernelId::Amplitude`] at one point.
 pub fn read_measure(info: &AmplitudeInfo, out: &[f64]) -> Measure<f64> {
     let mut reader = Reader { unread: out };
     match info.field {
@@ -235,13 +249,13 @@ pub fn read_measure(info: &AmplitudeInfo, out: &[f64]) -> Measure<f64> {
 /// An output functional at one point.
 #[derive(Clone, Debug)]
 pub struct OutputTerms<T> {
-    /// y, where it is evaluated at a place.
+    /// y of an output at a place; zero for an integral.
     pub place: T,
-    /// Of its monomials.
+    /// One coefficient for each monomial of [`OutputInfo::monomials`].
     pub coefficients: Vec<T>,
 }
 
-/// [`KernelId::Outputs`]
+/// Outputs of [`KernelId::Outputs`]: of each output functional its place, then its coefficients.
 pub fn write_outputs<T>(outputs: Vec<OutputTerms<T>>) -> Vec<T> {
     let terms = outputs.into_iter();
     terms
@@ -249,7 +263,7 @@ pub fn write_outputs<T>(outputs: Vec<OutputTerms<T>>) -> Vec<T> {
         .collect()
 }
 
-/// One output: [`KernelId::Outputs`].
+/// The output functional at `index`, from the outputs of [`KernelId::Outputs`] at one point.
 pub fn read_output(outputs: &[OutputInfo], index: usize, out: &[f64]) -> OutputTerms<f64> {
     let mut reader = Reader { unread: out };
     let mut terms = |info: &OutputInfo| OutputTerms {
@@ -262,7 +276,8 @@ pub fn read_output(outputs: &[OutputInfo], index: usize, out: &[f64]) -> OutputT
     terms(&outputs[index])
 }
 
-/// The terms of an operator with their coefficients: [`KernelId::Linear`], [`KernelId::Adjoint`].
+/// The terms of an operator with their coefficients, from the outputs of [`KernelId::Linear`] or [`KernelId::Adjoint`] at
+/// one point.
 pub fn read_terms<'a, Row, Column>(
     terms: &'a [TermInfo<Row, Column>],
     out: &'a [f64],
@@ -316,7 +331,7 @@ mod tests {
     use super::*;
     use crate::ids::FieldId;
 
-    /// What is written is what is read.
+    /// Every shape is read as it was written.
     #[test]
     fn written_and_read() {
         let jet = |field, order| BaseJet {

@@ -19,7 +19,7 @@ pub trait Number:
     + Mul<f64, Output = Self>
     + Div<f64, Output = Self>
 {
-    /// The number itself, without imaginary part and higher terms.
+    /// The real part of the term of degree 0: what comparisons and choices look at.
     fn real_part(self) -> f64;
     /// 1/a
     fn recip(self) -> Self;

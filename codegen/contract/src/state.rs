@@ -1,4 +1,4 @@
-//! The point state that kernels read: where what stands in it.
+//! The point state: coordinate, wavenumber, parameters and base fields at one point, as kernels read them.
 
 use crate::ids::{FieldId, Id, ParameterId, Table};
 
@@ -8,12 +8,12 @@ use crate::ids::{FieldId, Id, ParameterId, Table};
 pub struct StateLayout {
     parameters: usize,
     fields: usize,
-    /// Derivatives kept of each base field.
+    /// Highest y-derivative of each base field.
     base_order: usize,
 }
 
 impl StateLayout {
-    /// The layout for so many parameters and fields, with base derivatives to `base_order`.
+    /// The layout for a number of parameters and of fields, with y-derivatives of the base fields up to `base_order`.
     pub fn new(parameters: usize, fields: usize, base_order: usize) -> Self {
         StateLayout {
             parameters,
@@ -27,28 +27,28 @@ impl StateLayout {
         2 + self.parameters + self.fields * (self.base_order + 1)
     }
 
-    /// Of y.
+    /// Position of y.
     pub fn coordinate(&self) -> usize {
         0
     }
 
-    /// Of k.
+    /// Position of k.
     pub fn wavenumber(&self) -> usize {
         1
     }
 
-    /// Of a parameter.
+    /// Position of a parameter.
     pub fn parameter(&self, parameter: ParameterId) -> usize {
         2 + parameter.index()
     }
 
-    /// Of ∂y^order of a base field.
+    /// Position of ∂y^order of a base field.
     pub fn base(&self, field: FieldId, order: usize) -> usize {
         2 + self.parameters + field.index() * (self.base_order + 1) + order
     }
 }
 
-/// The state at one point, made element by element.
+/// The values of the point state, in the order of [`StateLayout`].
 #[derive(Clone, Debug)]
 pub struct PointState {
     layout: StateLayout,
@@ -56,7 +56,7 @@ pub struct PointState {
 }
 
 impl PointState {
-    /// At a place, for a wavenumber, with parameters; the base fields are zero.
+    /// The state at `y` for a wavenumber and parameters. The base fields are zero until they are set.
     pub fn new(layout: StateLayout, y: f64, k: f64, parameters: &Table<ParameterId, f64>) -> Self {
         let mut values = vec![0.0; layout.length()];
         values[layout.coordinate()] = y;
@@ -67,7 +67,7 @@ impl PointState {
         PointState { layout, values }
     }
 
-    /// Fills in the fields in closed form: the outputs of [`crate::KernelId::Closed`].
+    /// Sets every base field from the outputs of [`crate::KernelId::Closed`], which are zero for solved fields.
     pub fn set_closed(&mut self, closed: &[f64]) {
         let first = self.layout.base(FieldId(0), 0);
         self.values[first..].copy_from_slice(closed);
@@ -79,12 +79,12 @@ impl PointState {
         self.values[position] = value;
     }
 
-    /// What kernels read.
+    /// The values, of length [`StateLayout::length`].
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// What kernels read, as it is kept.
+    /// The values, of length [`StateLayout::length`].
     pub fn into_values(self) -> Vec<f64> {
         self.values
     }

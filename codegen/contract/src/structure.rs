@@ -351,7 +351,7 @@ pub enum ResidualId {
     Conditions(CaseId),
     /// One value a condition that the base state of a case, being in closed form, has to meet.
     BaseChecks(CaseId),
-    /// The density of each closure of a case, in the order of its closures; nothing where all densities are linear.
+    /// The density of each closure of a case, in the order of its closures; no program if all densities are linear.
     Integrals(CaseId),
 }
 

@@ -1,4 +1,4 @@
-//! A model run from its spec without a build: the kernels' operations, interpreted.
+//! A model that runs from its spec without a build, by interpreting the operations of its kernels.
 
 use crate::ids::{BalanceId, CaseId, Table};
 use crate::kernel::{Kernel, ModelKernels};
@@ -21,8 +21,8 @@ pub struct TapeModel {
 }
 
 impl TapeModel {
-    /// A model of kernels; `sources` are path and text of the spec and its law files, `laws` of every law file
-    /// at hand, `generator` is the build that made the kernels.
+    /// A model of kernels. `sources` and `laws` are path and text of files, as [`Model::sources`] and [`Model::laws`] give
+    /// them; `generator` is the identity of the build that made the kernels.
     pub fn new(
         kernels: ModelKernels,
         sources: Vec<(String, String)>,

@@ -309,7 +309,7 @@ impl<'a> Deriver<'a> {
         self.graph.vanishes(opened)
     }
 
-    /// What each balance is divided by: 1 if the spec says nothing.
+    /// The divisor of each balance; 1 if the spec gives none.
     fn divisors(&mut self, mistakes: &mut Vec<Diagnostic>) -> Option<Table<BalanceId, Id>> {
         let mut divisors = Table::default();
         for balance in &self.model.balances {

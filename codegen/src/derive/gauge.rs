@@ -10,12 +10,14 @@ use crate::graph::{BalanceId, FieldId, Graph, Id, Jet, Node, Rational};
 use crate::model::Closure;
 use num_traits::One;
 
+/// Whether a form holds the field itself, not only its derivatives.
 fn holds_value(form: &Form, field: FieldId) -> bool {
     let mut jets = form.terms.keys().flatten();
     jets.any(|jet| *jet == Jet::value(field))
 }
 
-/// The closure of a field of which only derivatives matter, or why it is none: message and expectation.
+/// The closure of a field of which only derivatives enter the balances. `Err` says why the field is no gauge: the message
+/// of a diagnostic, and what it expects.
 pub(super) fn gauge(
     deriver: &mut Deriver,
     problem: &CaseProblem,
@@ -37,6 +39,7 @@ pub(super) fn gauge(
             "a field of which only derivatives enter the balances",
         ));
     }
+    // ∂t field enters with the mass m_i: the multiplier μ in m_i (∂t field + μ) is the rate of a drift.
     let rate = Jet {
         t: 1,
         ..Jet::value(field)
@@ -49,6 +52,7 @@ pub(super) fn gauge(
             column: mass,
         });
     }
+    // Without mass, some balance times a weight ℓ is a divergence: L†ℓ = 0, M0†ℓ = 0, and no flux at the ends.
     let paired = problem.pairing.position(|f| *f == field);
     let unpaired = model.balances.ids().filter(|row| Some(*row) != paired);
     for row in paired.into_iter().chain(unpaired) {
@@ -104,8 +108,8 @@ pub(super) fn check_declared(
     }
 }
 
-/// Weights under which a balance may be a divergence: its divisor times powers of what its coefficients are
-/// divided by, such as r for ∂r u + u/r.
+/// Weights under which a balance may be a divergence: its divisor times powers of the factors of its coefficients that
+/// vary with y, such as r for ∂r u + u/r.
 fn null_candidates(deriver: &mut Deriver, problem: &CaseProblem, row: BalanceId) -> Vec<Id> {
     let graph = &mut *deriver.graph;
     let mut bases: Vec<Id> = Vec::new();

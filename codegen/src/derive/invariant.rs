@@ -31,7 +31,7 @@ pub(super) struct Proof<'a> {
     pub problem: &'a CaseProblem<'a>,
     pub walls: &'a MeanWalls,
     pub rules: &'a BaseRules,
-    /// At each end its coordinate and what its conditions say; nothing where they are nonlinear or hold |∂x|.
+    /// Each end with its coordinate and its conditions as rules; `None` if they are nonlinear or hold |∂x|.
     pub ends: Vec<(End, Id, Option<EndRules>)>,
 }
 
@@ -151,7 +151,7 @@ impl Proof<'_> {
         sums
     }
 
-    /// Σ ℓ_i P_i with corrections, if it is a divergence whose flux through the ends vanishes; nothing where it is none.
+    /// Σ ℓ_i P_i with corrections, if it is a divergence whose flux through the ends vanishes; `None` if it is not.
     ///
     /// # Errors
     /// No proof either way.
@@ -234,7 +234,7 @@ impl Proof<'_> {
         Ok(Some(correction))
     }
 
-    /// Whether integration by parts leaves nothing at the ends, up to derivatives along them.
+    /// Whether the boundary terms of integration by parts vanish at the ends, up to derivatives along them.
     fn is_closed(&self, deriver: &mut Deriver, sum: &Form) -> Result<bool, Undecided> {
         if deriver.model.interval.is_none() {
             return Ok(true);
@@ -328,7 +328,7 @@ fn solved(graph: &mut Graph, jet: Jet, said: &EndRules) -> Form {
     form
 }
 
-/// Along what a total derivative counts as nothing.
+/// The directions whose total derivatives integrate to zero.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Along {
     /// x, y and t.
@@ -421,7 +421,7 @@ fn is_divergence(deriver: &mut Deriver, sum: &Form, order: usize) -> Result<bool
 fn flux(graph: &mut Graph, form: &Form) -> Form {
     let mut total = Form::default();
     for (monomial, &coefficient) in &form.terms {
-        // |∂x| of what does not depend on x is nothing.
+        // |∂x| of an average over x is zero.
         if monomial.iter().any(|jet| jet.absx > 0) {
             continue;
         }

@@ -1,4 +1,4 @@
-//! The problem at k = 0 by itself: null functions ℓ(y) of L† and what the two ends leave of them.
+//! The problem at k = 0: null functions ℓ(y) of L†, and the boundary form that they leave at the two ends.
 
 use super::boundary::{
     BoundaryForm, Combination, Reduced, Simplifier, at_zero_wavenumber, boundary_form, demands,
@@ -13,7 +13,7 @@ use crate::model::End;
 use landau_contract::Id as _;
 use num_traits::One;
 
-/// The density as the mass matrix carries it into the balances.
+/// The column M0 w of a density with weights w: Σ_j m_ij w_j for each balance i.
 pub(super) fn carried(
     deriver: &mut Deriver,
     linear: &[DirectTerm],
@@ -29,7 +29,7 @@ pub(super) fn carried(
     column
 }
 
-/// ℓ with M0†ℓ = density, by Gaussian elimination on the mass matrix.
+/// ℓ with M0†ℓ = density, by elimination in the mass matrix; `None` if there is none, or the density holds ∂y.
 pub(super) fn multiplier(
     deriver: &mut Deriver,
     linear: &[DirectTerm],
@@ -47,7 +47,7 @@ pub(super) fn multiplier(
         .collect();
     fields.sort_unstable();
     fields.dedup();
-    // One equation for each field: Σ_i m_ij ℓ_i = w_j.
+    // One equation for each field j: Σ_i m_ij ℓ_i = w_j.
     let mut system = LinearSystem::new(graph, deriver.model.balances.len());
     for field in fields {
         let mass = linear.iter().filter(|t| t.jet.of == field && t.jet.t == 1);
@@ -86,7 +86,8 @@ pub(super) fn conserved(
     walls.vanish(deriver, &walls.operator, column)
 }
 
-/// The part of L†ℓ (`time` = 0) or M0†ℓ (`time` = 1) at k = 0, field by field.
+/// L†ℓ (`time` = 0) or M0†ℓ (`time` = 1) at k = 0: Σ c ∂y^d ℓ_i over the terms c ∂y^d of each field's row, without those
+/// that hold ∂x.
 fn image(
     deriver: &mut Deriver,
     adjoint: &[AdjointTerm],
@@ -110,7 +111,7 @@ fn image(
     image
 }
 
-/// What the two ends leave of the problem at k = 0, where conditions hold no ∂x.
+/// Boundary forms and conditions at k = 0: the terms without ∂x.
 pub(super) struct MeanWalls {
     /// The boundary form of L.
     operator: BoundaryForm,
@@ -154,7 +155,7 @@ pub(super) fn mean_walls(
         let mut simplifier = Simplifier {
             at_end: &mut simplify,
         };
-        // Every row has a jet without ∂x to be solved for.
+        // Every term of a row is without ∂x, so that the elimination always has a pivot.
         if let Ok(reduced) = reduce(deriver.graph, rows, &mut simplifier) {
             ends.push((end, place, reduced));
         }
@@ -194,7 +195,7 @@ impl MeanWalls {
             .collect()
     }
 
-    /// Whether ℓ leaves nothing at the ends, of L and of M0.
+    /// Whether the boundary forms of L and of M0 vanish for ℓ at both ends.
     pub fn vanish_for(&self, deriver: &mut Deriver, column: &[(BalanceId, Id)]) -> bool {
         self.vanish(deriver, &self.operator, column) && self.vanish(deriver, &self.mass, column)
     }
@@ -232,7 +233,7 @@ impl MeanWalls {
         true
     }
 
-    /// Whether M0†ℓ is the density, nothing being left at the ends.
+    /// Whether M0†ℓ is the density, and the boundary form of M0 vanishes for ℓ at both ends.
     pub fn carries(
         &self,
         deriver: &mut Deriver,
@@ -251,7 +252,7 @@ impl MeanWalls {
     }
 }
 
-/// Whether Σ image_f q_f is a constant times the density of a conserved integral.
+/// Whether Σ_f image_f q_f is a constant times the density of a conserved integral.
 fn is_multiple(graph: &mut Graph, image: &Table<FieldId, Id>, closure: &CaseClosure) -> bool {
     let CaseClosure::Conserved { density, .. } = closure else {
         return false;
@@ -260,6 +261,7 @@ fn is_multiple(graph: &mut Graph, image: &Table<FieldId, Id>, closure: &CaseClos
     let Some((first, weight)) = density.first() else {
         return false;
     };
+    // image_f = factor · w_f with d factor/dy = 0; the first field of the density gives the factor.
     let factor = graph.divide_terms(image[first.of], *weight);
     let slope = graph.differentiate(factor, Variable::AlongBase);
     if !graph.vanishes(slope) {

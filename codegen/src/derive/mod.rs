@@ -48,9 +48,9 @@ use landau_contract::{BaseRowId, SolvedId};
 pub struct Derivation {
     /// Every expression of the model and of the operators.
     pub graph: Graph,
-    /// What was derived from.
+    /// The model that everything is derived from.
     pub model: Model,
-    /// What was derived.
+    /// The operators.
     pub operators: Operators,
 }
 
@@ -60,7 +60,7 @@ pub struct Operators {
     pub order: usize,
     /// M ∂t X − R of each balance, expanded, not divided.
     pub balances: Table<BalanceId, Form>,
-    /// What each balance is divided by (1 where the spec says nothing).
+    /// The divisor of each balance; 1 if the spec gives none.
     pub divisors: Table<BalanceId, Id>,
     /// L and M0, divided.
     pub linear: Vec<DirectTerm>,
@@ -68,9 +68,9 @@ pub struct Operators {
     pub adjoint: Vec<AdjointTerm>,
     /// N2, N3, … : `nonlinear[d − 2][row]`, divided, on the right-hand side.
     pub nonlinear: Vec<Table<BalanceId, Form>>,
-    /// Values and points of L's fields and balances.
+    /// Numbers of values of the fields and of points of the balances in L.
     pub offsets: Offsets<BalanceId, FieldId>,
-    /// Values and points of L†.
+    /// The same numbers in L†, whose rows are fields and whose columns are balances.
     pub adjoint_offsets: Offsets<FieldId, BalanceId>,
     /// The field that each balance determines.
     pub pairing: Table<BalanceId, FieldId>,
@@ -78,7 +78,7 @@ pub struct Operators {
     pub parity: Option<Parity>,
     /// Balances that determine the base state, or have to hold for it.
     pub base: Table<BaseRowId, BaseRow>,
-    /// Points of `base` and values of `solved`.
+    /// Numbers of points of `base` and of values of `solved`.
     pub base_offsets: Offsets<BaseRowId, SolvedId>,
     /// Fields that the base state is solved for, numbers last.
     pub solved: Table<SolvedId, FieldId>,
@@ -95,7 +95,7 @@ pub struct Operators {
 /// Derives all operators to the given order.
 ///
 /// # Errors
-/// What the form of the model does not allow, with its place in the spec.
+/// Every mistake that the derivation meets, with its place in the spec.
 pub fn derive(mut graph: Graph, model: Model, order: usize) -> Result<Derivation, Diagnostics> {
     let mut mistakes = Vec::new();
     let operators = Deriver::new(&model, &mut graph, order).run(&mut mistakes);

@@ -1,7 +1,7 @@
 //! Conditions at a singular end of the interval, such as an axis r = 0.
 //!
 //! Where the weights of the balances vanish, so does the boundary form, and asks for less than there are
-//! adjoint conditions. What stands in their place is regularity: the leading term of each adjoint balance
+//! adjoint conditions. Regularity takes their place: the leading term of each adjoint balance
 //! in powers of the distance from the end. (r Y')' + r g Y = 0 asks for Y' = 0 at r = 0.
 
 use super::boundary::{Combination, split};

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Comments by the position of the output, or of the register, that they stand above.
 pub(super) type Comments = BTreeMap<usize, String>;
 
-/// What stands above some of the outputs of a kernel: for L and L†, the balance or field of the outputs that follow.
+/// Comments above outputs of a kernel: for L and L†, the balance or field of the outputs that follow.
 pub(super) fn comments(derivation: &Derivation, model: &ModelKernels, id: KernelId) -> Comments {
     let (structure, operators) = (&model.structure, &derivation.operators);
     let mut comments = Comments::new();

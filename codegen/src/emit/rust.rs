@@ -190,7 +190,7 @@ fn residuals(model: &ModelKernels) -> Dispatch {
     Dispatch { functions, arms }
 }
 
-/// The method that names what is kept and not declared; nothing where nothing is.
+/// The method that names conserved integrals which the spec does not declare; `None` if no case has any.
 fn undeclared(cases: &[(CaseId, Vec<String>)]) -> Option<TokenStream> {
     let arms = cases.iter().map(|(case, words)| {
         let case = case.literal();
@@ -334,7 +334,7 @@ fn counts(kernel: &Kernel) -> String {
     )
 }
 
-/// Keeps the signature uniform where a kernel reads nothing of an input.
+/// Statements `let _ = …;` for inputs that a kernel does not read, since all kernels have one signature.
 fn unused_inputs(kernel: &Kernel) -> TokenStream {
     let read = |array: usize| {
         kernel
@@ -438,14 +438,19 @@ fn arithmetic(real: &[bool], operation: &Operation) -> TokenStream {
     };
     let changes_sides = real[*a] && !real[*b];
     let (x, y) = (register(*a), register(*b));
-    match (operation, changes_sides) {
-        (Operation::Add(..), false) => quote!(#x + #y),
-        (Operation::Add(..), true) => quote!(#y + #x),
-        (Operation::Subtract(..), false) => quote!(#x - #y),
-        (Operation::Subtract(..), true) => quote!(-#y + #x),
-        (Operation::Multiply(..), false) => quote!(#x * #y),
-        (Operation::Multiply(..), true) => quote!(#y * #x),
-        (_, false) => quote!(#x / #y),
-        (_, true) => quote!(s::Number::recip(#y) * #x),
+    if changes_sides {
+        match operation {
+            Operation::Add(..) => quote!(#y + #x),
+            Operation::Subtract(..) => quote!(-#y + #x),
+            Operation::Multiply(..) => quote!(#y * #x),
+            _ => quote!(s::Number::recip(#y) * #x),
+        }
+    } else {
+        match operation {
+            Operation::Add(..) => quote!(#x + #y),
+            Operation::Subtract(..) => quote!(#x - #y),
+            Operation::Multiply(..) => quote!(#x * #y),
+            _ => quote!(#x / #y),
+        }
     }
 }

@@ -41,7 +41,7 @@ pub enum Subject {
 }
 
 impl Subject {
-    /// Whether the formula says that something vanishes, so that a factor means nothing.
+    /// Whether the formula is an equation to zero, which may be multiplied by any factor.
     pub(crate) fn is_equation(&self) -> bool {
         matches!(
             self,
@@ -111,7 +111,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Whether nothing differs.
+    /// Whether all terms agree, and all brackets are closed.
     pub fn agrees(&self) -> bool {
         self.differences.is_empty() && self.unclosed == 0
     }

@@ -137,7 +137,7 @@ fn aligned(lines: &[Formula]) -> String {
     text + " \\end{aligned}"
 }
 
-/// A name, what stands above it with one more superscript, what stands below it.
+/// A name with its mark and an exponent above it, and subscripts below it.
 fn symbol(name: &str, mark: Mark, exponent: &str, below: &[String]) -> String {
     let (name, dagger) = match name.strip_suffix('†') {
         Some(name) => (name, "\\dagger"),

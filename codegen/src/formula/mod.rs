@@ -1,4 +1,4 @@
-//! Formulas as trees: what stands between the algebra and the printers.
+//! Formulas as trees, made from the graph and printed as text or LaTeX.
 //!
 //! `Letters` writes expressions of a graph as trees, `group` gathers the terms of an operator as papers do,
 //! and two printers say the same tree in one line of text ([`plain`]) or in LaTeX ([`latex`]). Brackets
@@ -39,9 +39,9 @@ pub enum Formula {
     Symbol {
         /// The name.
         name: String,
-        /// What stands above.
+        /// The mark above: 0 for the base state, a prime for a perturbation.
         mark: Mark,
-        /// What stands below.
+        /// Subscripts.
         below: Vec<String>,
     },
     /// ∂ by a coordinate, to a power above 0.

@@ -28,7 +28,7 @@ impl Graph {
                 let value = self.residue(node, seed, &values);
                 values.insert(node, value);
             }
-            // A division by zero says nothing of the expression: count it as nonzero.
+            // The sample divides by zero, which decides nothing about the expression: count it as nonzero.
             values[&id] == Some(0)
         })
     }

@@ -83,8 +83,8 @@ impl Assembler<'_> {
         residuals
     }
 
-    /// The densities of a case's closures, laws opened; nothing where all are linear in the perturbation, whose
-    /// weights say everything.
+    /// The densities of a case's closures, laws opened. `None` if all are linear in the perturbation: the weights of
+    /// [`KernelId::Closures`] hold them then.
     fn densities(&mut self, case: CaseId) -> Option<Vec<Id>> {
         let closures = &self.operators.cases[case].closures;
         let mut densities = closures.iter().filter_map(CaseClosure::density);

@@ -59,7 +59,7 @@ impl Names<'_> {
         text.get(place.range.clone()).unwrap_or_default().to_owned()
     }
 
-    /// A name that stands for nothing, with the nearest one that does.
+    /// The mistake of an undeclared name, with the nearest name that is declared.
     pub(super) fn unknown(&self, name: &str, place: &Location, view: &View) -> Diagnostic {
         let scope = &self.scopes[view.scope];
         let mut candidates: Vec<&str> = view.arguments.iter().map(|(n, _)| n.as_str()).collect();

@@ -31,7 +31,7 @@ pub struct Model {
     pub title: String,
     /// Name of the periodic coordinate.
     pub periodic: String,
-    /// The cross-stream coordinate, where there is one.
+    /// The cross-stream coordinate; `None` in a model without one.
     pub interval: Option<Interval>,
     /// In the order of their declaration in the spec.
     pub parameters: Table<ParameterId, Parameter>,
@@ -89,7 +89,7 @@ impl Model {
         before.matches('\n').count() + 1
     }
 
-    /// What stands at a place, on one line.
+    /// The text of the spec at a place, on one line.
     pub fn written(&self, place: &Location) -> String {
         let text = self.sources.get(place.file).map_or("", |file| &file.text);
         let written = text.get(place.range.clone()).unwrap_or_default();
@@ -176,7 +176,7 @@ pub struct Field {
     pub name: String,
     /// The text in quotation marks beside the name; empty if there is none.
     pub doc: String,
-    /// Where the base state must lie.
+    /// The least value that the base state may take.
     pub lower: f64,
     /// The upper bound.
     pub upper: f64,
@@ -302,7 +302,7 @@ pub enum Amplitude {
     },
 }
 
-/// weight |field|², the weight also as the user wrote it; nothing for 1.
+/// weight |field|², the weight also as the user wrote it; that text is empty for the weight 1.
 pub struct Weight {
     /// The field whose square counts.
     pub field: FieldId,

@@ -210,7 +210,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What an operator makes of an operand, which it may repeat.
+    /// An operator applied to an operand, which the text may repeat.
     fn applied(&self, operator: &Operator, operand: &str, range: &Range<usize>) -> Read<String> {
         if operator.length(operand.len()) > LONGEST_READING {
             let message = "these operators multiply out to too many terms";

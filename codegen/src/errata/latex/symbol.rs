@@ -1,4 +1,4 @@
-//! Names with what stands above and below them, and vectors.
+//! Names with their marks, subscripts and powers, and vectors.
 
 use super::operator::Value;
 use super::token::{Kind, Token};
@@ -33,7 +33,7 @@ impl Reader<'_> {
         Ok(Some(coordinates.zip(components.iter().cloned()).collect()))
     }
 
-    /// A name with what stands above and below it.
+    /// A name with its marks, subscripts and power.
     pub(super) fn symbol(&mut self) -> Read<Value> {
         let range = self.here();
         let name = self.name()?;
@@ -206,7 +206,7 @@ impl Reader<'_> {
     }
 }
 
-/// What stands around a name.
+/// The marks of a name, its subscripts, and the power that follows a mark.
 #[derive(Default)]
 struct Marks {
     prime: bool,
