@@ -1,4 +1,4 @@
-//! The passes in their order, and what they have in common.
+//! The passes in their order, and the state that they share.
 
 use super::expand::{Expander, Inexpandable};
 use super::open::{self, Dependence, Opener};
@@ -10,13 +10,13 @@ use crate::graph::{BalanceId, CaseId, FieldId, Graph, Id, Node, ParameterId, Rat
 use crate::model::Model;
 use num_traits::One;
 
-/// More cases of structural switches than any model needs.
+/// Limit on the cases of structural switches; no model comes near it.
 const MOST_CASES: usize = 256;
 
 /// What a law must not hold.
 const LAW_REMEDY: &str = "the law may hold no root, quotient, logarithm or power with a parameter in its exponent of something that vanishes in the base state";
 
-/// The passes' common surroundings.
+/// The model, its graph, and tables that all passes read.
 pub(crate) struct Deriver<'a> {
     pub model: &'a Model,
     pub graph: &'a mut Graph,
@@ -174,7 +174,7 @@ impl<'a> Deriver<'a> {
             .collect()
     }
 
-    /// How L and L† are collocated.
+    /// The numbers of points and values of L and L†.
     fn offsets(
         &self,
         linear: &[DirectTerm],
@@ -251,7 +251,7 @@ impl<'a> Deriver<'a> {
         }
     }
 
-    /// The form, if all its coefficients have values once the laws are put in.
+    /// The form, if all its coefficients are defined once the laws are opened: none holds 1/0 or ln 0.
     ///
     /// The expansion keeps laws opaque, so it does not see that the slope of √n is infinite where n⁰ = 0.
     fn with_values(&mut self, form: Form) -> Result<Form, Inexpandable> {
@@ -262,7 +262,7 @@ impl<'a> Deriver<'a> {
         }
     }
 
-    /// Why some coefficient has no value once the laws are put in, if one has none.
+    /// Why some coefficient is undefined once the laws are opened; `None` if all are defined.
     fn without_value(&mut self, coefficients: &[Id]) -> Option<Inexpandable> {
         let (laws, closed) = (&self.model.laws, &self.model.base.closed);
         let mut opener = Opener::new(laws, closed, &self.uniform);
@@ -290,7 +290,7 @@ impl<'a> Deriver<'a> {
         Some(trouble)
     }
 
-    /// The result of an analysis that leaves no expression behind: what is derived later does not depend on it.
+    /// Runs an analysis whose expressions are dropped, so that operators derived later do not depend on it.
     pub(super) fn aside<R>(&mut self, analysis: impl FnOnce(&mut Self) -> R) -> R {
         let graph = self.graph.clone();
         let result = analysis(self);
@@ -298,8 +298,8 @@ impl<'a> Deriver<'a> {
         result
     }
 
-    /// Whether an expression of the base state vanishes, with its laws opaque or, where the base state is given
-    /// in closed form, by what they are.
+    /// Whether an expression of the base state vanishes: with opaque laws or, if the base state has a closed form, with
+    /// opened laws.
     pub fn vanishes_opened(&mut self, id: Id) -> bool {
         if self.graph.vanishes(id) {
             return true;

@@ -14,10 +14,10 @@ use crate::graph::{
 use num_traits::{One, Zero};
 use std::collections::HashMap;
 
-/// Products of terms that a model has use for, in one product of series.
+/// Limit on the products of terms in one product of series; no model comes near it.
 const MOST_PRODUCTS: usize = 1_000_000;
 
-/// Order of derivatives that a model has use for.
+/// Limit on the order of derivatives; no model comes near it.
 const HIGHEST_DERIVATIVE: u8 = 64;
 
 /// Why an expression has no expansion, and what to write in its place.
@@ -36,10 +36,10 @@ impl From<&str> for Inexpandable {
     }
 }
 
-/// What an expansion has to know of its model.
+/// The parts of a model that an expansion reads.
 pub struct Expander<'a> {
     pub order: usize,
-    /// Closed form of each base field, where there is one.
+    /// Closed form of each base field; `None` for a field that is solved for.
     pub closed: &'a Table<FieldId, Option<Id>>,
     /// Fields that are numbers: their derivatives vanish.
     pub uniform: &'a Table<FieldId, bool>,

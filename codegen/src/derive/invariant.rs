@@ -26,7 +26,7 @@ pub(super) type EndRules = Vec<(Jet, Vec<(Jet, Id)>)>;
 /// No proof either way: |∂x| in products, or nonlinear conditions at an end.
 pub(super) struct Undecided;
 
-/// What a proof needs of the surroundings.
+/// The problem, its boundary forms and the conditions at its ends, which every proof reads.
 pub(super) struct Proof<'a> {
     pub problem: &'a CaseProblem<'a>,
     pub walls: &'a MeanWalls,
@@ -96,7 +96,7 @@ impl Proof<'_> {
         words
     }
 
-    /// Weights that a balance may have in a divergence: its divisor, also times the coordinate.
+    /// Weights ℓ_i that a balance may have in a divergence: its divisor, and its divisor times the coordinate.
     fn columns(&self, deriver: &mut Deriver) -> Vec<(BalanceId, Id)> {
         let mut columns = Vec::new();
         for (row, &divisor) in self.problem.divisors.pairs() {
@@ -416,7 +416,7 @@ fn is_divergence(deriver: &mut Deriver, sum: &Form, order: usize) -> Result<bool
     Ok(true)
 }
 
-/// What integration by parts in y leaves of a homogeneous divergence at an end:
+/// The boundary terms of a homogeneous divergence of degree d after integration by parts in y:
 /// 1/d Σ_J Σ_l (−1)^l ∂y^l[(−∂x)^a (−∂t)^c ∂S/∂q_J] ∂y^(b−1−l) q.
 fn flux(graph: &mut Graph, form: &Form) -> Form {
     let mut total = Form::default();

@@ -28,7 +28,7 @@ pub fn sections(derivation: &Derivation) -> Vec<Section> {
     sections
 }
 
-/// What stands before a formula.
+/// The label before a formula.
 #[derive(Clone, PartialEq)]
 enum Label {
     None,

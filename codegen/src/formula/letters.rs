@@ -81,7 +81,7 @@ impl Letters {
         self.named_jet(&self.fields[jet.of], jet, mark)
     }
 
-    /// The same derivative of whatever has a name.
+    /// The same derivative of anything that has a name.
     pub fn named_jet<V>(&self, name: &str, jet: Jet<V>, mark: Mark) -> Formula {
         let mut below = vec!["t".to_owned(); usize::from(jet.t)];
         below.extend(vec![self.periodic.clone(); usize::from(jet.x)]);

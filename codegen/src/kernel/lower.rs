@@ -5,9 +5,9 @@ use crate::graph::{Graph, Id, Node, Rational};
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use std::collections::HashMap;
 
-/// Where the leaves of expressions come from.
+/// The inputs of a kernel, and where its leaves lie in them.
 pub struct Lowering<'a> {
-    /// What the leaves are read from.
+    /// Input arrays, by name.
     pub inputs: Vec<Array>,
     /// Array and position of a leaf; `None` for a leaf the kernel does not have.
     pub locate: &'a dyn Fn(&Node) -> Option<(usize, usize)>,
@@ -56,7 +56,7 @@ impl Lowering<'_> {
     }
 }
 
-/// Operations below a node when nothing is shared.
+/// Operations below a node before common subexpressions are shared.
 fn unshared_cost(graph: &Graph, id: Id, written: &HashMap<Id, usize>) -> usize {
     let node = graph.node(id);
     let mut cost = match node {
@@ -150,7 +150,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Numerator and denominator apart: one division.
+    /// Numerator and denominator are multiplied up apart, so that there is one division.
     fn product(&mut self, factors: &[(Id, Rational)]) -> Register {
         let mut sides = [None, None];
         for (base, exponent) in factors {
