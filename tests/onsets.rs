@@ -420,3 +420,70 @@ fn pictures_draw_converged_values() {
         );
     }
 }
+
+/// A second mode grows where d − s (r − a)² − w (q² − k²)² > 0: an island that is narrow in r and in k at once, at a place
+/// that no scan looks at. It begins at r = a − √(d/s), k = q; the first mode grows from r = 0.8.
+#[test]
+fn islands_that_are_narrow_in_both_directions() {
+    let spec = "model islands \"An island in a second field\";
+coordinates { x: periodic; }
+parameters { r = 0.1; a = 0.31; s = 400; d = 0.01; q = 1.7; w = 50; on = 0.8; }
+fields { u; v; }
+let w1 = u + dx(dx(u));
+let w2 = q^2*v + dx(dx(v));
+balance {
+    eu: dt(u) = (r - on)*u - w1 - dx(dx(w1)) - u^3 - u*v^2;
+    ev: dt(v) = (d - s*(r - a)^2)*v - w*(q^2*w2 + dx(dx(w2))) - v^3 - v*u^2;
+}
+base { u = 0; v = 0; }
+amplitude { integral(|u|^2 + |v|^2) = 1; }
+";
+    let path = written("islands.model", spec);
+    for (values, value, k) in [
+        ("", 0.305, 1.7),
+        ("--set w=1", 0.305, 1.7),
+        ("--set s=2 --set d=0.003", 0.31 - 0.0015_f64.sqrt(), 1.7),
+        // In the step in which the first mode begins to grow.
+        ("--set on=0.35", 0.305, 1.7),
+        ("--set on=0.316 --set q=1.4171", 0.305, 1.4171),
+        ("--set a=0.9", 0.8, 1.0),
+    ] {
+        for range in ["0.5:2.5", "0.9:1.8"] {
+            let options = format!("--vary r --from 0 --to 1 --minimize k={range} {values}");
+            let answer = onset(&path, &options);
+            within(&answer, "value", value);
+            within(&answer, "k", k);
+        }
+    }
+}
+
+/// Zero is a value of a parameter like others, between walls too: growth is r − r0 − (1 − k²)² − (n² − 1) π².
+#[test]
+fn onsets_at_zero_between_walls() {
+    let spec = "model zero_onset \"Onset at r = r0 between walls\";
+coordinates { x: periodic; z: 0..1; }
+parameters { r = 0.1; r0 = 0; }
+fields { u; }
+let w = u + dx(dx(u));
+balance { e: dt(u) = (r - r0)*u - (w + dx(dx(w))) + dz(dz(u)) + pi^2*u - u^3; }
+base { u = 0; }
+boundary { at z = 0 { u = 0; } at z = 1 { u = 0; } }
+amplitude { at z = 1/2 { u = 1; } }
+";
+    let path = written("zero_onset.model", spec);
+    for interval in ["--from=-0.7 --to 1", "--from 0 --to 1", "--from 1 --to=-1"] {
+        for value in [0.0, 1e-6, 1e-3] {
+            let options = format!("--vary r {interval} --set r0={value} --minimize k=0.6:1.9");
+            let answer = onset(&path, &options);
+            within(&answer, "value", value);
+            within(&answer, "k", 1.0);
+        }
+    }
+    // A root beyond the end of the interval is no answer.
+    let line = format!(
+        "critical {} --vary r --from 0.1 --to 0.19999999 --set r0=0.2 --minimize k=0.6:1.9",
+        path.display()
+    );
+    let answer = landau(&line.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(answer.status, 3, "{}", answer.out);
+}

@@ -1,7 +1,7 @@
 //! One mode beyond third order, and its envelope: coefficients that are exact or of an independent program of 200 bits,
 //! and the fully nonlinear bed.
 
-use crate::support::{close, json, number, written};
+use crate::support::{close, json, landau, number, written};
 use landau_solver::model::C64;
 
 #[test]

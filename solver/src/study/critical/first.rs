@@ -6,10 +6,12 @@
 use super::super::Progress;
 use super::LEADS;
 use super::extremum::Search;
+use super::hills::{Hills, Place};
 use super::newton::Root;
 use super::summit::{Side, Summit, coarse, rates};
 use super::survey::{Node, Sought, Survey};
 use crate::error::Result;
+use crate::pencil::Spectrum;
 use crate::problem::Problem;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -55,8 +57,11 @@ impl Search<'_> {
                     return self.settle(&summit, before);
                 }
                 Some(before) if before.side() < summit.side() => {
-                    let island = self.island(&places[..index], &wavenumbers, progress)?;
-                    return island.map_or_else(|| self.settle(&before, summit), Ok);
+                    let root = self.settle(&before, summit);
+                    let mut decaying = places[..index].to_vec();
+                    decaying.extend(root.as_ref().map(|root| root.x));
+                    let island = self.island(&decaying, &wavenumbers, progress)?;
+                    return island.map_or(root, Ok);
                 }
                 _ => {}
             }
@@ -85,28 +90,33 @@ impl Search<'_> {
             search: self,
             all: Mutex::default(),
         };
-        for &k in wavenumbers {
-            progress.advance(0);
-            let Some(x) = sites.growing(places, k) else {
-                continue;
-            };
-            let mut wavenumbers = wavenumbers.to_vec();
-            wavenumbers.push(k);
-            let grows = self.summit(x, None, &wavenumbers)?;
-            if grows.side() != Side::Grows {
-                continue;
-            }
-            let is_before = |place: &&f64| (x - **place) * (x - places[0]) > 0.0;
-            let before = places.iter().rfind(is_before).unwrap_or(&places[0]);
-            let decays = self.summit(*before, None, &wavenumbers)?;
-            return self.settle(&decays, grows).map(Some);
+        progress.advance(0);
+        let hills = Hills::new(&sites, places, wavenumbers);
+        let growing = match hills.growing() {
+            Ok(Some(place)) => Some(place),
+            _ => wavenumbers.iter().find_map(|&k| {
+                progress.advance(0);
+                sites.growing(places, k).map(|x| Place { x, k })
+            }),
+        };
+        let Some(Place { x, k }) = growing else {
+            return Ok(None);
+        };
+        let mut wavenumbers = wavenumbers.to_vec();
+        wavenumbers.push(k);
+        let grows = self.summit(x, None, &wavenumbers)?;
+        if grows.side() != Side::Grows {
+            return Ok(None);
         }
-        Ok(None)
+        let is_before = |place: &&f64| (x - **place) * (x - places[0]) > 0.0;
+        let before = places.iter().rfind(is_before).unwrap_or(&places[0]);
+        let decays = self.summit(*before, None, &wavenumbers)?;
+        self.settle(&decays, grows).map(Some)
     }
 }
 
 /// Collocations along the parameter, kept for all wavenumbers.
-struct Sites<'s> {
+pub(super) struct Sites<'s> {
     search: &'s Search<'s>,
     /// By the bits of the value.
     all: Mutex<BTreeMap<u64, Arc<Problem>>>,
@@ -119,7 +129,7 @@ impl Sites<'_> {
         let low = places.iter().copied().fold(f64::INFINITY, f64::min);
         let high = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let survey = Survey {
-            spectra: &|x| rates(self.at(x)?.as_ref(), k),
+            spectra: &|x| self.rates(x, k),
             ends: (low, high),
             sought: Sought::Growth,
         };
@@ -128,13 +138,23 @@ impl Sites<'_> {
         nodes.iter().find(grows).map(|node| node.x)
     }
 
+    /// All eigenvalues at a value of the parameter and a wavenumber, and the unit of rates.
+    pub fn rates(&self, x: f64, k: f64) -> Result<(Spectrum, f64)> {
+        rates(self.at(x)?.as_ref(), k)
+    }
+
     /// The collocation that spectra are looked at on.
-    fn at(&self, x: f64) -> Result<Arc<Problem>> {
+    pub fn at(&self, x: f64) -> Result<Arc<Problem>> {
+        self.beside(x, None)
+    }
+
+    /// The same, its base state from that of a neighbour where one is given.
+    pub fn beside(&self, x: f64, near: Option<&Problem>) -> Result<Arc<Problem>> {
         let kept = || self.all.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(problem) = kept().get(&x.to_bits()) {
             return Ok(problem.clone());
         }
-        let site = self.search.site(x, None)?;
+        let site = self.search.site(x, near.map(|near| near.base.as_ref()))?;
         let coarse = coarse(self.search.setup, &site).map(Arc::new);
         let problem = coarse.unwrap_or(site.problem);
         kept().insert(x.to_bits(), problem.clone());

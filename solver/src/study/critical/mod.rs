@@ -5,6 +5,7 @@ mod crest;
 mod extremum;
 mod first;
 mod grid;
+mod hills;
 mod newton;
 mod question;
 mod report;

@@ -210,9 +210,9 @@ fn crest(a: &Node, b: &Node) -> Option<f64> {
 }
 
 /// Whether an eigenvalue may be the continuation of another, by their slopes.
-fn continues(here: &Branch, there: &Branch, gap: f64) -> bool {
+pub(super) fn continues(here: &Branch, there: &Branch, gap: f64) -> bool {
     let mean = 0.5 * gap * (here.slope + there.slope);
-    let reach = 0.5 * gap * (here.slope.norm() + there.slope.norm());
+    let reach = 0.5 * gap.abs() * (here.slope.norm() + there.slope.norm());
     (there.c - here.c - mean).norm() <= reach
 }
 
