@@ -5,12 +5,12 @@ use crate::model::{CaseId, Id, ParameterId, Structure, Table, nearest};
 use crate::words;
 use serde_json::Value;
 
-/// Values of all parameters of a model; those set to `auto` are still to be determined.
+/// Values of all parameters of a model. Those set to `auto` hold a start, and the base state determines them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameters {
-    /// By parameter; of a switch the position of its choice.
+    /// The value of each parameter, in its unit; for a switch the position of its choice.
     pub values: Table<ParameterId, f64>,
-    /// Whether the base state determines it.
+    /// Whether a parameter is set to `auto`.
     pub automatic: Table<ParameterId, bool>,
 }
 
@@ -23,10 +23,10 @@ impl Parameters {
         }
     }
 
-    /// A parameter by name.
+    /// The parameter of a name.
     ///
     /// # Errors
-    /// Names the parameters there are.
+    /// There is none; the message names the nearest one and all.
     pub fn named(structure: &Structure, name: &str) -> Result<ParameterId> {
         structure
             .parameters
@@ -55,7 +55,7 @@ impl Parameters {
     /// Sets a parameter to a number.
     ///
     /// # Errors
-    /// Values outside the declared range.
+    /// The value is outside the declared range, or not a whole number where one is needed.
     pub fn set(&mut self, structure: &Structure, parameter: ParameterId, value: f64) -> Result<()> {
         let info = &structure.parameters[parameter];
         let refuse = |trouble: &str| {
@@ -80,7 +80,7 @@ impl Parameters {
     /// Sets a parameter from text: a number, the name of a choice, or `auto`.
     ///
     /// # Errors
-    /// Says what the parameter accepts.
+    /// There is no such parameter, or it does not accept the text; the message says what it accepts.
     pub fn set_text(&mut self, structure: &Structure, name: &str, text: &str) -> Result<()> {
         let parameter = Self::named(structure, name)?;
         let info = &structure.parameters[parameter];
@@ -111,8 +111,8 @@ impl Parameters {
     pub fn case(&self, structure: &Structure) -> CaseId {
         let chosen = structure.switches.iter().map(|&switch| self.choice(switch));
         let chosen: Vec<usize> = chosen.collect();
-        let found = structure.cases.position(|case| case.choices == chosen);
-        found.unwrap_or(CaseId::at(0))
+        let case = structure.cases.position(|case| case.choices == chosen);
+        case.unwrap_or(CaseId::at(0))
     }
 
     /// The value of a parameter as the user writes it: a number, the name of a choice, or `auto`.
@@ -127,26 +127,27 @@ impl Parameters {
         }
     }
 
-    /// All by name, switches by the name of their choice.
+    /// All parameters as a JSON object: numbers, and switches by the name of their choice.
     pub fn json(&self, structure: &Structure) -> Value {
         let named = structure.parameters.pairs().map(|(id, info)| {
-            let value = match info.choices.is_empty() {
-                true => words::number(self.values[id]),
-                false => Value::String(self.shown(structure, id)),
+            let value = if info.choices.is_empty() {
+                words::number(self.values[id])
+            } else {
+                Value::String(self.shown(structure, id))
             };
             (info.name.clone(), value)
         });
         Value::Object(named.collect())
     }
 
-    /// Those that are not at their defaults: `S = 200`.
+    /// Parameters that are not at their defaults, each as `S = 200`.
     pub fn changed(&self, structure: &Structure) -> Vec<String> {
-        let own = structure.parameters.pairs().filter_map(|(id, info)| {
+        let changed = structure.parameters.pairs().filter_map(|(id, info)| {
             let value = self.shown(structure, id);
             let moved = self.automatic[id] || self.values[id] != info.default;
             moved.then(|| format!("{} = {value}", info.name))
         });
-        own.collect()
+        changed.collect()
     }
 }
 

@@ -18,7 +18,7 @@ pub fn complex(value: C64) -> Value {
     Value::Array(vec![number(value.re), number(value.im)])
 }
 
-/// A number in a title: six decimals at most, or all digits of one that they would leave nothing of.
+/// A number in a title: six decimals at most, without trailing zeros. Below 10⁻⁴ all digits, with an exponent.
 pub fn short(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-4 {
         return format!("{value:e}");
@@ -27,7 +27,7 @@ pub fn short(value: f64) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// A number without the part that its error leaves nothing of.
+/// A number whose real or imaginary part is set to zero where it is below a hundredth of the error.
 pub fn settled(value: C64, error: f64) -> C64 {
     let part = |x: f64| if x.abs() <= 1e-2 * error { 0.0 } else { x };
     C64::new(part(value.re), part(value.im))
@@ -51,12 +51,12 @@ pub fn shown(value: C64) -> String {
     }
 }
 
-/// A number with the digits that its error leaves standing, ten at most.
+/// A number with its error, in the digits that the error leaves certain, ten at most.
 pub fn with_error(value: f64, error: f64) -> String {
     Measured::new(value, error).to_string()
 }
 
-/// The amplitude equation with its numbers.
+/// The amplitude equation at cubic order, dA/dt = a0 A + a2 A³ and dθ/dt = b0 + b2 A², with its numbers.
 pub fn amplitude_equation(c0: Measured<C64>, c2: Measured<C64>) -> String {
     let digits = |x: f64, error: f64| Measured::new(x, error).scientific(6);
     let first = |c: Measured<C64>, x: f64| digits(x, c.error);
@@ -73,10 +73,10 @@ pub fn amplitude_equation(c0: Measured<C64>, c2: Measured<C64>) -> String {
     text
 }
 
-/// Characters of what a message quotes.
+/// Most characters of a text from outside that a message quotes: about a line.
 const LONGEST_QUOTATION: usize = 100;
 
-/// What somebody gave, as a message quotes it: on one line, cut where it is long.
+/// A text from outside as a message quotes it: on one line without control characters, cut after 100 characters.
 pub fn quoted(text: &str) -> String {
     let plain = |c: char| if c.is_control() { ' ' } else { c };
     let mut line: String = text.chars().take(LONGEST_QUOTATION).map(plain).collect();
@@ -86,7 +86,7 @@ pub fn quoted(text: &str) -> String {
     line
 }
 
-/// What to say of an integral that the balances keep and the spec does not declare.
+/// The note on a conserved integral that the spec does not declare.
 pub fn undeclared(integral: &str) -> String {
     format!(
         "note: the balances conserve {integral}, which the block `mean` does not name; a slow mean then couples to the \
@@ -100,8 +100,8 @@ mod tests {
 
     #[test]
     fn numbers_of_any_size() {
-        let found = [0.16, 1708.0, -2.5e-9, 0.0, 1e-4].map(short);
-        assert_eq!(found, ["0.16", "1708", "-2.5e-9", "0", "0.0001"]);
+        let texts = [0.16, 1708.0, -2.5e-9, 0.0, 1e-4].map(short);
+        assert_eq!(texts, ["0.16", "1708", "-2.5e-9", "0", "0.0001"]);
         assert_eq!(with_error(1e-17, 5e-16), "0 ± 6e-16");
         assert_eq!(with_error(1707.76178, 2e-5), "1707.76178 ± 2e-5");
     }

@@ -67,7 +67,7 @@ impl Scalar for C64 {
     }
 
     fn size(self) -> f64 {
-        // Not `norm`: what guards against overflow costs more than all the rest.
+        // Not `norm`, whose guard against overflow costs more than the rest of the loop.
         self.norm_sqr().sqrt()
     }
 
@@ -121,7 +121,7 @@ pub struct Factorised<T: Scalar> {
     rows: Perm<usize>,
     /// 1 / (largest entry of each row)
     scale: Vec<f64>,
-    /// 1 / (largest entry of each column of the rest)
+    /// 1 / (largest entry of each column of the matrix with scaled rows)
     columns: Vec<f64>,
 }
 
@@ -157,7 +157,7 @@ impl<T: Scalar> Factorised<T> {
         }
     }
 
-    /// A⁻¹ b, or nothing where A is singular.
+    /// A⁻¹ b; `None` where A is singular.
     pub fn solve_regular(&self, right: &[T]) -> Option<Vec<T>> {
         if self.is_singular() {
             return None;
@@ -169,7 +169,7 @@ impl<T: Scalar> Factorised<T> {
             .then_some(solution)
     }
 
-    /// Whether rounding alone keeps the matrix from being singular.
+    /// Whether A is singular to rounding: the smallest pivot is at most ε times the largest.
     fn is_singular(&self) -> bool {
         let pivots = (0..self.scale.len()).map(|i| self.factors[(i, i)].size());
         let (least, most) = pivots.fold((f64::INFINITY, 0.0_f64), |(a, b), p| (a.min(p), b.max(p)));
@@ -308,7 +308,7 @@ mod tests {
     use super::{C64, Factorised, dot};
     use faer::Mat;
 
-    /// Hilbert's matrix, its rows and columns in units of their own: A x = b and Aᴴ y = b.
+    /// Hilbert's matrix, every row and column in another unit: A x = b and Aᴴ y = b.
     #[test]
     fn systems_in_any_units() {
         let n = 5;
@@ -326,8 +326,8 @@ mod tests {
         }
         // ⟨y, A x⟩ = ⟨Aᴴ y, x⟩
         let y = factorised.solve_adjoint(&right);
-        let (left, other) = (dot(&y, &right), dot(&right, &x));
-        assert!((left - other).norm() < 1e-12 * left.norm());
+        let (y_a_x, adjoint_y_x) = (dot(&y, &right), dot(&right, &x));
+        assert!((y_a_x - adjoint_y_x).norm() < 1e-12 * y_a_x.norm());
     }
 
     #[test]

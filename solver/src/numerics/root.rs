@@ -2,12 +2,14 @@
 
 use crate::error::{Error, Result};
 
+/// Most evaluations of the function. Brent's method needs some ten, and bisection to the machine's precision about fifty.
 const MOST_ITERATIONS: usize = 100;
 
-/// Brent's method between two points of opposite sign: the root and the function's value there.
+/// A root of f between a and b by Brent's method (Brent 1973, chapter 4), with the value of f there. `fa` and `fb` are the
+/// values at a and b, of opposite sign. `tolerance` is the absolute error of the root.
 ///
 /// # Errors
-/// Whatever the function fails with; no convergence.
+/// f fails, or the iteration does not converge.
 pub fn brent(
     mut f: impl FnMut(f64) -> Result<f64>,
     (mut a, mut fa): (f64, f64),
@@ -82,7 +84,7 @@ mod tests {
         // Dottie's number
         assert!((root(|x| x.cos() - x, 0.0, 1.0) - 0.739_085_133_215_160_6).abs() < 1e-13);
         assert!((root(|x| x * x * x - 2.0, 3.0, 0.0) - 2.0_f64.cbrt()).abs() < 1e-13);
-        // Flat on one side, steep on the other.
+        // Flat at both ends, steep at the root.
         assert!((root(|x| (20.0 * (x - 0.3)).tanh(), -1.0, 1.0) - 0.3).abs() < 1e-12);
     }
 }

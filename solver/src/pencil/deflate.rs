@@ -10,18 +10,22 @@ use faer::{Mat, MatRef};
 
 /// Rounds of deflation: boundary conditions, a constraint, its hidden constraint, and some to spare.
 const MOST_DEFLATIONS: usize = 6;
-/// Singular directions of M0 after deflation, relative to its largest.
+/// A pivot of a QR decomposition below this part of the largest is zero. It is far above rounding, and a mass that is
+/// smaller than this beside the largest would be lost.
 const RANK: f64 = 1e-11;
-/// A hidden equation of no larger terms, relative to the largest of the rows with mass that it comes from, says
-/// nothing.
+/// A hidden equation whose terms are below this part of the largest terms in rows with mass is rounding of these, some four
+/// times the machine's precision, and determines nothing.
 const NOISE: f64 = 1e-15;
-/// Rounds in which rows and columns are brought to comparable size.
+/// Rounds of scaling rows and columns to comparable size.
 const BALANCING: usize = 3;
-/// Shifts tried: one, one on the scale of what it found, and one beside an eigenvalue that was hit.
+/// Number of shifts that are tried: the first, one on the scale of the eigenvalues that it gives, and one more where a
+/// shift hits an eigenvalue.
 const MOST_SHIFTS: usize = 3;
-/// An irrational number is no eigenvalue of a model with round parameters.
+/// The first shift, in units of 1/time of the model: Euler's constant. An eigenvalue of a model with round parameters is
+/// hardly ever equal to it.
 const FIRST_SHIFT: f64 = 0.577_215_664_901_532_9;
-/// The shift over the scale of the slow eigenvalues at which these are accurate.
+/// Ratio of the shift to the scale of the slow eigenvalues at which these are accurate: (L − σ M0)⁻¹ M0 loses the digits of
+/// eigenvalues far below σ, and cannot tell those far above it from infinite ones.
 const GOOD_SHIFT: std::ops::Range<f64> = 1e-3..1e6;
 
 /// An eigenvalue with its right eigenvector.
@@ -41,14 +45,15 @@ impl<T: Scalar> Reduced<T> {
     /// A pencil that is singular for every c, or has no finite eigenvalue.
     pub fn new((mut operator, mut mass): (Mat<T>, Mat<T>)) -> Result<Self> {
         let mut basis = balance(&mut operator, &mut mass);
-        // Against the whole, not against what is left of it: the last thing left may be noise.
+        // Sizes of the whole pencil. After several deflations the rows that are left may be noise, which compared with
+        // itself would look large.
         let rows = largest_of_rows(&mass)
             .into_iter()
             .zip(largest_of_rows(&operator));
         let with_mass = rows.filter(|(mass, _)| *mass > f64::MIN_POSITIVE);
         let terms = with_mass.map(|(_, terms)| terms).fold(0.0, f64::max);
         let masses = largest(&mass);
-        // Conditions and constraints as they were given have units of their own, and no noise.
+        // Boundary conditions and constraints as the model gives them may be in any units, and hold no noise.
         let mut noise = 0.0;
         for _ in 0..2 * MOST_DEFLATIONS {
             let size = operator.nrows();
@@ -100,8 +105,8 @@ impl<T: Scalar> Reduced<T> {
     pub fn eigenvectors(&self) -> Result<(Spectrum, Vec<Mode>)> {
         let mut vectors = Mat::zeros(0, 0);
         let values = self.solve(|shift, inverse| {
-            let (values, found) = T::eigen(inverse)?;
-            vectors = found;
+            let (values, of_inverse) = T::eigen(inverse)?;
+            vectors = of_inverse;
             Some(values.into_iter().map(|mu| shift + mu.inv()).collect())
         })?;
         let n = self.basis.nrows();
@@ -122,7 +127,7 @@ impl<T: Scalar> Reduced<T> {
         mut method: impl FnMut(C64, MatRef<'_, T>) -> Option<Vec<C64>>,
     ) -> Result<Vec<C64>> {
         let mut shift = FIRST_SHIFT;
-        let mut found = None;
+        let mut latest = None;
         for _ in 0..MOST_SHIFTS {
             let inverse = self.shift_invert(C64::new(shift, 0.0));
             let finite = (0..inverse.ncols())
@@ -131,17 +136,18 @@ impl<T: Scalar> Reduced<T> {
                 .then(|| method(C64::new(shift, 0.0), inverse.as_ref()))
                 .flatten();
             let Some(values) = values else {
+                // Any factor that is not 1 leads away from the eigenvalue that was hit.
                 shift *= 1.37;
                 continue;
             };
             let scale = Spectrum::new(values.clone()).scale();
-            found = Some(values);
+            latest = Some(values);
             if scale == 0.0 || GOOD_SHIFT.contains(&(shift / scale)) {
                 break;
             }
             shift = FIRST_SHIFT * scale;
         }
-        found.ok_or_else(|| Error::computation("the eigenvalue iteration did not converge"))
+        latest.ok_or_else(|| Error::computation("the eigenvalue iteration did not converge"))
     }
 
     /// (L − σ M0)⁻¹ M0
@@ -204,7 +210,7 @@ fn power_of_two(size: f64) -> f64 {
     }
 }
 
-/// Of every row, column by column as they are kept.
+/// The largest modulus in every row; the smallest positive number for a row of zeros.
 fn largest_of_rows<T: Scalar>(matrix: &Mat<T>) -> Vec<f64> {
     let mut largest = vec![f64::MIN_POSITIVE; matrix.nrows()];
     for j in 0..matrix.ncols() {
@@ -283,11 +289,11 @@ mod tests {
         Some(spectrum.values.iter().map(|c| c.re).collect())
     }
 
-    fn agree(found: Option<Vec<f64>>, expected: &[f64]) {
-        let found = found.expect("a spectrum");
-        assert_eq!(found.len(), expected.len(), "{found:?}");
-        for (a, b) in found.iter().zip(expected) {
-            assert!((a - b).abs() < 1e-12, "{found:?}");
+    fn agree(spectrum: Option<Vec<f64>>, expected: &[f64]) {
+        let spectrum = spectrum.expect("a spectrum");
+        assert_eq!(spectrum.len(), expected.len(), "{spectrum:?}");
+        for (a, b) in spectrum.iter().zip(expected) {
+            assert!((a - b).abs() < 1e-12, "{spectrum:?}");
         }
     }
 
@@ -331,14 +337,14 @@ mod tests {
     fn any_unit_of_time() {
         for unit in [1e-12, 1.0, 1e12] {
             let operator = mat![[-unit, 0.0], [0.5 * unit, 2.0 * unit]];
-            let found = values(operator, Mat::identity(2, 2)).expect("a spectrum");
-            assert!((found[0] / unit - 2.0).abs() < 1e-12 && (found[1] / unit + 1.0).abs() < 1e-12);
+            let c = values(operator, Mat::identity(2, 2)).expect("a spectrum");
+            assert!((c[0] / unit - 2.0).abs() < 1e-12 && (c[1] / unit + 1.0).abs() < 1e-12);
         }
         // A condition has no unit of time: x' = −x + y, 0 = x − 2y again.
         for unit in [1e-18, 1e18] {
             let operator = mat![[-unit, unit], [1.0, -2.0]];
-            let found = values(operator, mat![[1.0, 0.0], [0.0, 0.0]]).expect("a spectrum");
-            assert!((found[0] / unit + 0.5).abs() < 1e-12, "{found:?}");
+            let c = values(operator, mat![[1.0, 0.0], [0.0, 0.0]]).expect("a spectrum");
+            assert!((c[0] / unit + 0.5).abs() < 1e-12, "{c:?}");
         }
     }
 }

@@ -1,14 +1,19 @@
-//! The two bases: physical values, and those in which every matrix of a mirror-symmetric model is real.
+//! The two bases: physical values, and the solver's basis, in which fields and rows that are odd in the mirror x → −x are
+//! divided by i.
+//!
+//! In a mirror-symmetric model every matrix is real in the solver's basis. A term with an odd number of ∂x connects an
+//! odd field with an even row, or an even field with an odd row. ∂x gives a factor i k, and the division takes the i away:
+//! with an odd field i q', i k · i q' = −k q' is real, and so is i k q / i = k q in an odd row.
 
 use crate::model::C64;
 use crate::numerics::dense::Scalar;
 use std::ops::{Add, Deref, DerefMut, Neg, Sub};
 
-/// Values of unknowns or equations in the solver's basis: odd ones divided by i.
+/// Values of all unknowns, or of all equations, in the solver's basis: odd ones are divided by i.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turned<T = C64>(pub Vec<T>);
 
-/// Physical values at the unknowns' points.
+/// Physical values of all unknowns, by the layout of the direct problem.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile(pub Vec<C64>);
 
@@ -41,7 +46,7 @@ impl DerefMut for Profile {
 }
 
 impl Profile {
-    /// Zeros.
+    /// A profile of `size` zeros.
     pub fn zero(size: usize) -> Self {
         Profile(vec![C64::new(0.0, 0.0); size])
     }
@@ -51,18 +56,18 @@ impl Profile {
         Profile(self.iter().map(|v| v.conj()).collect())
     }
 
-    /// Multiplied by a number.
+    /// The product with a number.
     pub fn times(&self, factor: C64) -> Self {
         Profile(self.iter().map(|v| v * factor).collect())
     }
 
-    /// Adds a multiple of another.
-    pub fn add(&mut self, factor: C64, other: &Profile) {
-        let pairs = self.0.iter_mut().zip(&other.0);
-        pairs.for_each(|(own, other)| *own += factor * other);
+    /// Adds `factor` times a profile.
+    pub fn add(&mut self, factor: C64, profile: &Profile) {
+        let pairs = self.0.iter_mut().zip(&profile.0);
+        pairs.for_each(|(sum, value)| *sum += factor * value);
     }
 
-    /// The largest modulus.
+    /// The largest modulus of a value.
     pub fn largest(&self) -> f64 {
         self.iter().map(|v| v.norm()).fold(0.0, f64::max)
     }
@@ -85,7 +90,7 @@ impl Turn {
         Turn(count % 4)
     }
 
-    /// i for what is odd in the mirror, 1 for what is even.
+    /// i where `odd`, in the mirror x → −x, and 1 where even.
     pub fn of(odd: bool) -> Self {
         Turn(u8::from(odd))
     }
@@ -95,7 +100,7 @@ impl Turn {
         self.0 % 2 == 1
     }
 
-    /// The number.
+    /// The power of i as a number.
     pub fn factor(self) -> C64 {
         match self.0 {
             0 => C64::new(1.0, 0.0),
@@ -109,8 +114,8 @@ impl Turn {
 impl Add for Turn {
     type Output = Turn;
 
-    fn add(self, other: Turn) -> Turn {
-        Turn::new(self.0 + other.0)
+    fn add(self, turn: Turn) -> Turn {
+        Turn::new(self.0 + turn.0)
     }
 }
 
@@ -125,8 +130,8 @@ impl Neg for Turn {
 impl Sub for Turn {
     type Output = Turn;
 
-    fn sub(self, other: Turn) -> Turn {
-        self + -other
+    fn sub(self, turn: Turn) -> Turn {
+        self + -turn
     }
 }
 

@@ -1,7 +1,7 @@
-//! Integrals that a spec calls conserved, recognised in the collocated problem at k = 0.
+//! Integrals that a spec calls conserved, checked in the collocated problem at k = 0.
 //!
-//! d/dt ∫ density = c ∫ density for an eigenvector of eigenvalue c, so that an integral is conserved if and
-//! only if it vanishes for all of them but one, whose eigenvalue is zero.
+//! For an eigenvector of eigenvalue c, d/dt ∫ density dy = c ∫ density dy. An integral is conserved if and only if it
+//! vanishes for all eigenvectors with c ≠ 0; it then is nonzero for one with c = 0.
 
 use super::Problem;
 use super::linear::with_borders;
@@ -11,30 +11,31 @@ use crate::numerics::dense::norm;
 use crate::pencil::Reduced;
 use crate::wavevector::WaveVector;
 
-/// What counts as zero, relative to the terms.
+/// An eigenvalue below this part of the scale of its spectrum is zero, and so is an integral below this part of |row| |x|.
+/// Slow modes are resolved to far less, and an integral that is not conserved is of order one.
 const TOLERANCE: f64 = 1e-6;
-/// Eigenvectors that are looked at: the slow ones, which are resolved.
+/// Number of eigenvectors that are looked at: the slowest ones, which every collocation resolves.
 const SLOW: usize = 6;
 
 impl Problem {
-    /// Recognises the claimed closures. Where switches change the walls, one that the problem does not bear out may
-    /// hold for other choices, and is dropped.
+    /// Checks the closures that the spec claims to be conserved. Where switches choose between boundary conditions, an
+    /// integral that is not conserved may be so for another choice, and its closure is dropped.
     ///
     /// # Errors
-    /// A claim that the problem does not bear out, whatever the switches.
+    /// A claimed integral is not conserved, and there are no switches.
     pub(super) fn recognise_claims(&mut self) -> Result<()> {
         let is_claim = |position: &usize| self.borders[*position].kind == ClosureKind::Claimed;
         let claims: Vec<usize> = (0..self.borders.len()).filter(is_claim).collect();
         if claims.is_empty() {
             return Ok(());
         }
-        let known = self
+        let unclaimed = self
             .borders
             .iter()
             .filter(|b| b.kind != ClosureKind::Claimed);
-        let known: Vec<_> = known.cloned().collect();
-        let slow = Reduced::<f64>::new(with_borders(self.direct.pencil(WaveVector::MEAN), &known))
-            .and_then(|pencil| pencil.eigenvectors());
+        let unclaimed: Vec<_> = unclaimed.cloned().collect();
+        let pencil = with_borders(self.direct.pencil(WaveVector::MEAN), &unclaimed);
+        let slow = Reduced::<f64>::new(pencil).and_then(|pencil| pencil.eigenvectors());
         // A problem that is singular bears nothing out.
         let (zero, mut modes) = slow.map_or((0.0, Vec::new()), |(spectrum, modes)| {
             (TOLERANCE * spectrum.scale(), modes)
@@ -43,6 +44,7 @@ impl Problem {
         modes.truncate(SLOW);
         let borne_out = |position: usize| {
             let row = &self.borders[position].row;
+            // |∫ density dy| relative to what it can be at most.
             let share = |mode: &[C64]| {
                 let sum: C64 = row.iter().zip(mode).map(|(r, x)| *x * *r).sum();
                 sum.norm() / (norm(row) * norm(mode))

@@ -1,8 +1,10 @@
-//! Bordering of the problems at k = 0.
+//! Bordering of the problems at k = 0 by the closures of the model.
 //!
-//! [L c; r d]: the row r closes the problem (the linear part of ∫ density), the column c carries its multiplier into
-//! the balances, the corner d holds the unknown numbers of the density. The adjoint problem is bordered by the same,
-//! exchanged: ∫ c·Y = 0, and the density in the rows of the fields.
+//! [σ M0 − L  c; r  d] [X; λ] = [G; −∫ F dy]
+//!
+//! The row r is the linear part of ∫ density dy. The column c carries the multiplier λ into the balances. The corner d
+//! holds the weights of unknown numbers in the density. In the adjoint problem rows and columns change places: the
+//! condition is ∫ c·Y dy = 0, and the density stands in the column, in the rows of the fields.
 
 use super::basis::Turn;
 use crate::base::BaseState;
@@ -18,47 +20,47 @@ use std::ops::Range;
 /// One border: a row that closes the problem, and the column of its multiplier.
 #[derive(Clone, Debug)]
 pub struct Border {
-    /// Which kind of closure.
+    /// Conserved integral, gauge, drift or unknown number.
     pub kind: ClosureKind,
-    /// Its position among the closures of the case.
+    /// Position among the closures of the case.
     pub closure: usize,
     /// What is closed, in words: `conserved n`, `gauge p`, `unknown G`.
     pub name: String,
-    /// The gauge or the unknown number.
+    /// The field of a gauge, or the unknown number; `None` for a conserved integral.
     pub field: Option<FieldId>,
-    /// Coefficients of the unknowns.
+    /// r: coefficients of the unknowns of the collocated problem.
     pub row: Vec<f64>,
-    /// Unknown numbers in the density, each with ∫ of its weight: entries of the corner.
+    /// Unknown numbers in the density, each with the integral of its weight: entries of the corner.
     pub numbers: Vec<(FieldId, f64)>,
     /// Whether the density is odd in the mirror x → −x.
     pub is_odd: bool,
-    /// Entries in the collocated equations, brought to the size of these: `unit` times the weights.
+    /// c: `unit` times the weights in the collocated equations, which are then as large as the terms there.
     pub column: Vec<f64>,
-    /// The multiplier is `unit` times the unknown that goes with the column.
+    /// The multiplier λ is `unit` times the unknown of the column.
     pub unit: f64,
 }
 
 impl Border {
-    /// The entry of the corner in this row and in the column of another border.
-    pub fn corner(&self, other: &Border) -> f64 {
-        if other.kind != ClosureKind::Unknown {
+    /// The entry d of the corner in the row of this border and the column of `column`.
+    pub fn corner(&self, column: &Border) -> f64 {
+        if column.kind != ClosureKind::Unknown {
             return 0.0;
         }
-        let own = self.numbers.iter();
-        let own = own.filter(|(field, _)| Some(*field) == other.field);
-        own.map(|(_, weight)| weight * other.unit).sum()
+        let numbers = self.numbers.iter();
+        let numbers = numbers.filter(|(field, _)| Some(*field) == column.field);
+        numbers.map(|(_, weight)| weight * column.unit).sum()
     }
 
-    /// The factor by which ∫ density enters the solver's basis.
+    /// The factor that takes ∫ density dy into the solver's basis.
     pub fn factor(&self) -> C64 {
         (-Turn::of(self.is_odd)).factor()
     }
 
-    /// Brings the column to the size of the equations that it enters, `sizes` being theirs.
+    /// Scales the column to the size of the balances that it enters, `sizes` being the sizes of their terms.
     pub fn balance(&mut self, layout: &Layout<BalanceId, FieldId>, sizes: &Table<BalanceId, f64>) {
         let touched = layout.rows.iter().zip(sizes.iter()).filter(|(block, _)| {
-            let own = block.of(&self.column);
-            own.iter().any(|c| *c != 0.0)
+            let weights = block.of(&self.column);
+            weights.iter().any(|c| *c != 0.0)
         });
         let weights = self.column.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
         let unit = touched.map(|(_, size)| size / weights).fold(0.0, f64::max);
@@ -69,13 +71,13 @@ impl Border {
     }
 }
 
-/// What closes a case, with its weights at any place.
+/// The closures of a case, whose weights can be evaluated at any place.
 struct Closures<'a> {
     base: &'a BaseState,
     space: &'a Space,
 }
 
-/// The borders of the direct problem.
+/// The borders of the direct problem, in the order of the closures of the case.
 pub fn direct(base: &BaseState, space: &Space, layout: &Layout<BalanceId, FieldId>) -> Vec<Border> {
     let closures = Closures { base, space };
     let infos = closures.infos().iter().enumerate();
@@ -97,10 +99,10 @@ pub fn direct(base: &BaseState, space: &Space, layout: &Layout<BalanceId, FieldI
     infos.map(border).collect()
 }
 
-/// The borders of the adjoint problem for the closures that the direct problem has kept.
+/// The borders of the adjoint problem for the closures with the positions `kept`.
 ///
 /// # Errors
-/// An integral of a derivative, which has no density.
+/// An integral condition holds a derivative, which has no density to stand in a column.
 pub fn adjoint(
     base: &BaseState,
     space: &Space,
@@ -264,7 +266,7 @@ impl Closures<'_> {
         column
     }
 
-    /// An unknown number enters the balances with its own coefficients: −L in its column.
+    /// The column of an unknown number: −L in its coefficients, balance by balance.
     fn unknown_column(
         &self,
         layout: &Layout<BalanceId, FieldId>,

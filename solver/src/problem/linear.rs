@@ -1,5 +1,6 @@
-//! An operator collocated: block (row, column) = Σ diag(coefficient) · (i k)^a |k|^b · ∂y^d, and its boundary
-//! conditions.
+//! An operator collocated at wavenumber k, with its boundary conditions:
+//!
+//! block (row, column) = Σ_terms diag(coefficient) · (i k)^a |k|^b · ∂y^d
 
 use super::basis::{Profile, Turn, Turned};
 use super::block::{Block, Blocks};
@@ -11,7 +12,7 @@ use crate::wavevector::WaveVector;
 use faer::Mat;
 use std::collections::BTreeMap;
 
-/// What is assembled: `mass`·M0 + `operator`·L, and `walls` times the boundary conditions.
+/// A matrix to be assembled: mass · M0 + operator · L, and walls · W for the rows of the boundary conditions.
 #[derive(Clone, Copy)]
 pub struct Combination {
     /// The factor of M0.
@@ -55,12 +56,12 @@ impl Combination {
     }
 }
 
-/// One boundary condition: Σ coefficient · Π jets, jets of one column or of several.
+/// One boundary condition, Σ coefficient · Π jets = 0.
 #[derive(Clone, Debug)]
 pub struct WallRow<Column> {
-    /// Where it holds.
+    /// The end at which it holds.
     pub end: End,
-    /// Its linear part: jet and coefficient.
+    /// Its linear part W: jets with their coefficients.
     pub linear: Vec<(Jet<Column>, f64)>,
     /// Products of jets with their coefficients.
     pub nonlinear: Vec<(Vec<Jet<Column>>, f64)>,
@@ -72,16 +73,16 @@ pub(super) struct CollocatedTerm<Row, Column> {
     pub row: Row,
     pub jet: Jet<Column>,
     pub coefficients: Vec<f64>,
-    /// The largest of them.
+    /// The largest modulus of a coefficient.
     pub largest: f64,
 }
 
 /// An operator from columns to rows with mass matrix and boundary conditions.
 #[derive(Clone)]
 pub struct LinearProblem<Row, Column> {
-    /// Where it is collocated.
+    /// The interval, or point, on which it is collocated.
     pub space: Space,
-    /// Where unknowns and equations stand.
+    /// Positions and points of unknowns and equations.
     pub layout: Layout<Row, Column>,
     /// The boundary conditions.
     pub walls: Vec<WallRow<Column>>,
@@ -103,13 +104,13 @@ pub fn symbol<V>(jet: &Jet<V>, q: WaveVector) -> C64 {
 }
 
 impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
-    /// The factor of a jet at wavenumber k in the solver's basis, its row divided by `row`.
+    /// (i k)^x |k|^absx of a jet in the solver's basis, in a row that is divided by `row`.
     fn symbol(&self, jet: &Jet<Column>, k: WaveVector, row: Turn) -> C64 {
         let turn = Turn::new(jet.x) + self.column_turns[jet.of] - row;
         turn.factor() * k.size(jet)
     }
 
-    /// What makes a wall's row real: i for a condition that is odd in the mirror.
+    /// The power of i by which a boundary condition is divided in the solver's basis: i for one that is odd in the mirror.
     pub(super) fn wall_turn(&self, wall: &WallRow<Column>) -> Turn {
         let first = wall.linear.first().map(|(jet, _)| *jet);
         first.map_or(Turn::default(), |jet| {
@@ -117,7 +118,7 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
         })
     }
 
-    /// The factor by which a wall's right-hand side enters the solver's basis.
+    /// The factor that takes the right-hand side of a boundary condition into the solver's basis.
     pub fn wall_factor(&self, wall: &WallRow<Column>) -> C64 {
         if self
             .column_turns
@@ -129,12 +130,12 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
         (-self.wall_turn(wall)).factor()
     }
 
-    /// What a physical value of a column is in units of one in the solver's basis.
+    /// The physical value of a column over its value in the solver's basis.
     pub fn column_factor(&self, column: Column) -> C64 {
         self.column_turns[column].factor()
     }
 
-    /// The factor by which a row's right-hand side enters the solver's basis.
+    /// The factor that takes the right-hand side of a row into the solver's basis.
     pub fn row_factor(&self, row: Row) -> C64 {
         (-self.row_turns[row]).factor()
     }
@@ -161,12 +162,12 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
         turned
     }
 
-    /// A combination of L and M0 at wavenumber k, to be applied or written out.
+    /// A combination of L and M0 at wavenumber k, as a sum of blocks.
     pub fn blocks<T: Scalar>(&self, k: WaveVector, combination: Combination) -> Blocks<T> {
         self.assemble(combination, &|jet, turn| self.symbol(jet, k, turn))
     }
 
-    /// The same as a matrix.
+    /// A combination of L and M0 at wavenumber k, as a matrix.
     pub fn matrix<T: Scalar>(&self, k: WaveVector, combination: Combination) -> Mat<T> {
         self.blocks(k, combination).dense()
     }
@@ -184,7 +185,7 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
         )
     }
 
-    /// d^order/dk^order of a combination at k ≠ 0.
+    /// d^order/dk^order of a combination at k ≠ 0: that of k^n is k^n n (n − 1) … / k^order.
     pub fn wavenumber_derivative(
         &self,
         k: WaveVector,
@@ -249,6 +250,7 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
         Blocks::new(self.layout.size, blocks)
     }
 
+    /// Adds `weight` times the linear parts of the boundary conditions, a row each.
     fn add_walls<T: Scalar>(
         &self,
         blocks: &mut Vec<Block<T>>,
@@ -265,13 +267,13 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
                 let order = usize::from(jet.y);
                 let derivative = self.space.derivative(columns.points, to, order);
                 let row = self.layout.walls + index;
-                let own = vec![T::from_complex(factor)];
-                blocks.push(Block::new(row, columns.offset, derivative, own));
+                let coefficients = vec![T::from_complex(factor)];
+                blocks.push(Block::new(row, columns.offset, derivative, coefficients));
             }
         }
     }
 
-    /// Σ |coefficient| |k|^a (2/h)^d over the chosen terms of a row, at each of its points.
+    /// Σ |coefficient| |k|^a (2/h)^d over the chosen terms of a row, at each of its points; h is the length of the interval.
     pub(super) fn term_sizes(
         &self,
         row: Row,
@@ -279,8 +281,8 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
         chosen: impl Fn(&Jet<Column>) -> bool,
     ) -> Vec<f64> {
         let mut sums = vec![0.0; self.layout.rows[row].len];
-        let own = self.terms.iter().filter(|term| term.row == row);
-        for term in own.filter(|term| chosen(&term.jet)) {
+        let terms = self.terms.iter();
+        for term in terms.filter(|term| term.row == row && chosen(&term.jet)) {
             let jet = &term.jet;
             let size = k.length().powi(i32::from(jet.x + jet.absx))
                 * self.space.rate().powi(i32::from(jet.y));
@@ -291,8 +293,8 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
         sums
     }
 
-    /// What a column of a given size adds at most to each row and then to each wall of L − c M0:
-    /// Σ |coefficient| |k|^a (2/h)^d |c|^t size.
+    /// The most that a column of a given size contributes to each row of L − c M0, then to each boundary condition,
+    /// `[row][column]`: Σ |coefficient| |k|^a (2/h)^d |c|^t size.
     pub fn shares(
         &self,
         k: WaveVector,
@@ -324,13 +326,13 @@ impl<Row: Id, Column: Id> LinearProblem<Row, Column> {
 
     /// Whether a row holds the time derivative of a column.
     pub(super) fn has_mass(&self, row: Row, column: Column) -> bool {
-        let mut own = self.terms.iter().filter(|term| term.row == row);
-        own.any(|term| term.jet.t > 0 && term.jet.of == column)
+        let mut terms = self.terms.iter();
+        terms.any(|term| term.row == row && term.jet.t > 0 && term.jet.of == column)
     }
 }
 
-/// The pencil of L and M0 with borders that have no mass: a multiplier, or an unknown number, stands in it with the
-/// other sign than beside σ M0 − L.
+/// The pencil of L and M0 with borders, which have no mass. A multiplier or unknown number in it has the opposite sign of
+/// that in σ M0 − L, since L itself has.
 pub(super) fn with_borders<T: Scalar>(
     (operator, mass): (Mat<T>, Mat<T>),
     borders: &[Border],

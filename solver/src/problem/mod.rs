@@ -56,11 +56,12 @@ pub struct Problem {
     pub(crate) noise: Option<Noise>,
 }
 
-/// Point states at the points of a family, computed once a family.
+/// Point states of a base state at the points of families, computed once for each family.
 struct States<'b> {
     base: &'b BaseState,
     space: &'b Space,
-    known: Vec<(Points, Vec<Vec<f64>>)>,
+    /// Families that have been computed, each with its point states, `[point][element]`.
+    computed: Vec<(Points, Vec<Vec<f64>>)>,
 }
 
 impl<'b> States<'b> {
@@ -68,24 +69,28 @@ impl<'b> States<'b> {
         States {
             base,
             space,
-            known: Vec::new(),
+            computed: Vec::new(),
         }
     }
 
+    /// Point states at a family, `[point][element]`.
     fn at(&mut self, points: Points) -> &[Vec<f64>] {
-        let known = self.known.iter().position(|(other, _)| *other == points);
-        let position = known.unwrap_or_else(|| {
+        let position = self
+            .computed
+            .iter()
+            .position(|(family, _)| *family == points);
+        let position = position.unwrap_or_else(|| {
             let places = self.space.places(points).into_iter();
             let states = places
                 .map(|place| self.base.at(place, WaveVector::MEAN))
                 .collect();
-            self.known.push((points, states));
-            self.known.len() - 1
+            self.computed.push((points, states));
+            self.computed.len() - 1
         });
-        &self.known[position].1
+        &self.computed[position].1
     }
 
-    /// A kernel at all points of a family.
+    /// A kernel at all points of a family, `[point][output]`.
     fn run(&mut self, kernel: KernelId, points: Points) -> Vec<Vec<f64>> {
         let model = self.base.model.clone();
         let states = self.at(points).iter();
@@ -148,10 +153,10 @@ impl Problem {
         linear(&mut States::new(base, &space), resolution)
     }
 
-    /// The adjoint problem, discretised on its own.
+    /// The adjoint problem, discretised from L† itself and not by transposing the direct one.
     ///
     /// # Errors
-    /// Why the model has no adjoint boundary conditions.
+    /// The model has no adjoint boundary conditions; the message says why.
     pub fn adjoint(&self) -> Result<&Adjoint> {
         let made = self.adjoint.get_or_init(|| self.discretised_adjoint());
         made.as_ref().map_err(Clone::clone)
@@ -181,22 +186,22 @@ impl Problem {
         })
     }
 
-    /// The kernels.
+    /// The model, whose kernels compute all coefficients.
     pub fn model(&self) -> &dyn Model {
         self.base.model.as_ref()
     }
 
-    /// What the kernels are about.
+    /// The names, fields, balances and terms that the kernels' outputs stand for.
     pub fn structure(&self) -> &Structure {
         self.base.structure()
     }
 
-    /// Where it is collocated.
+    /// The interval, or point, on which it is collocated.
     pub fn space(&self) -> &Space {
         &self.direct.space
     }
 
-    /// Whether matrices are real wherever the shift is.
+    /// Whether the model has the mirror symmetry: σ M0 − L is then real in the solver's basis for every real σ.
     pub fn is_real(&self) -> bool {
         self.structure().parity.is_some()
     }
@@ -222,10 +227,10 @@ impl Problem {
         with_borders(self.direct.pencil::<T>(WaveVector::MEAN), &self.borders)
     }
 
-    /// The same for the adjoint problem.
+    /// L† and M0† at k = 0 with the borders of the closures.
     ///
     /// # Errors
-    /// A model without adjoint boundary conditions, or whose closures have no adjoint.
+    /// The model has no adjoint boundary conditions, or its closures have no adjoint.
     pub fn bordered_adjoint_pencil<T: Scalar>(&self) -> Result<(Mat<T>, Mat<T>)> {
         let adjoint = self.adjoint()?;
         let kept: Vec<usize> = self.borders.iter().map(|b| b.closure).collect();
@@ -249,15 +254,15 @@ impl Problem {
         self.borders.iter().any(conserved) || !self.undeclared().is_empty()
     }
 
-    /// Integrals that the balances keep and the spec does not declare, as a spec would name them.
+    /// Conserved integrals that the spec's block `mean` does not declare, as it would name them.
     pub fn undeclared(&self) -> Vec<String> {
         self.model().undeclared(self.base.case)
     }
 
-    /// The rate at which the balance of slowest terms changes its field: Σ |coefficient| |k|^a (2/h)^d over the
-    /// mass, a median over the points.
+    /// The rate at which the slowest balance changes its field, in units of eigenvalues: Σ |coefficient| |k|^a (2/h)^d over
+    /// the coefficient of the time derivative, the median over the points.
     pub fn rate(&self, k: WaveVector) -> f64 {
-        // Terms of the fields whose time derivative the balance holds: others have units of their own.
+        // Only terms in fields whose time derivative the balance holds: the ratio is then a rate whatever the units.
         let rate = self.slowest(k, |row, jet| self.direct.has_mass(row, jet.of));
         if rate.is_finite() {
             rate
@@ -302,7 +307,7 @@ fn linear(states: &mut States, resolution: Option<usize>) -> Result<Direct> {
     })
 }
 
-/// The middle value, or zero of none.
+/// The middle one of some values; zero where there is none.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
@@ -341,8 +346,8 @@ fn terms<Row: Id, Column: Id>(
         .collect();
     for (points, rows) in layout.groups() {
         let values = states.run(kernel, points);
-        let own = terms.iter_mut().enumerate();
-        for (index, term) in own.filter(|(_, term)| rows.contains(&term.row)) {
+        let terms = terms.iter_mut().enumerate();
+        for (index, term) in terms.filter(|(_, term)| rows.contains(&term.row)) {
             term.coefficients = values.iter().map(|v| v[index]).collect();
             let sizes = term.coefficients.iter().map(|c| c.abs());
             term.largest = sizes.fold(0.0, f64::max);

@@ -1,30 +1,35 @@
-//! The coefficients of every register of a program, one degree after another.
+//! The coefficients of every register of a program on truncated polynomials Σ_α a_α z^p z̄^s, degree by degree.
 //!
-//! At each degree what lower degrees make of it (`interior`) is found first, once; then what is linear in the
-//! coefficients of this degree is added, as often as they change.
+//! A coefficient of degree |α| is a sum of two parts. Products of lower degrees, Σ a_β b_γ over β γ = α with |β|, |γ| ≥ 1,
+//! are computed once, by [`Levels::begin`]. The terms with β = 1 or γ = 1 are linear in coefficients of degree |α|, with
+//! values at the base state as factors; they are added by [`Levels::outputs`] and [`Levels::complete`], as often as the
+//! coefficients of the jets change. [`Product`] and `close` hold the equations of both parts.
 
 use super::monomial::{Monomials, Place};
 use super::program::{Arithmetic, Program, Step};
 use crate::model::{C64, Number, Register, apply};
 use crate::numerics::dense::vectorised;
 
-/// All coefficients at the points of one grid.
+/// The coefficients of all registers at the points of one grid, through some degree.
 pub struct Levels {
+    /// Number of points.
     points: usize,
-    /// Numbers a coefficient has at a point: one, or real and imaginary part.
+    /// Numbers that a coefficient has at a point: one in real arithmetic; real and imaginary part in complex arithmetic.
     parts: usize,
-    /// Values at the base state, `[register][point]`.
+    /// a_0, the values at the base state, `[register][point]`.
     base: Vec<f64>,
-    /// Position of a register among those that are series.
+    /// Slot of a register: its position among those that depend on jets.
     slots: Vec<usize>,
+    /// Number of slots.
     count: usize,
-    /// By degree from 1 on: `[slot][monomial][part][point]`.
+    /// a_α by degree from 1 on, `[degree − 1][slot][monomial][part][point]`, the last four in one array.
     levels: Vec<Vec<f64>>,
+    /// Memory of a copy of the last level, kept from call to call.
     scratch: Vec<f64>,
 }
 
 impl Levels {
-    /// The values at the base state: `states` and `jets` are its point states and jets at every point.
+    /// The values at the base state. `states` and `jets` are its point states and jets, `[point][element]`.
     pub fn new(program: &Program, states: &[Vec<f64>], jets: &[Vec<f64>]) -> Self {
         let points = states.len();
         let (mut slots, mut count) = (Vec::new(), 0);
@@ -79,13 +84,13 @@ impl Levels {
         }
     }
 
-    /// Length of one coefficient at all points.
+    /// Length of one coefficient: parts times points.
     fn width(&self) -> usize {
         self.parts * self.points
     }
 
-    /// What lower degrees make of the coefficients of one degree, the next; of the monomials in `wanted` alone,
-    /// the others being zero.
+    /// Begins the next degree: computes the products of lower degrees for the stored monomials with the indices `wanted`.
+    /// Coefficients of all remaining monomials are zero. Levels of this degree and beyond are discarded.
     pub fn begin(
         &mut self,
         program: &Program,
@@ -110,6 +115,7 @@ impl Levels {
                 vectorised(
                     #[inline(always)]
                     || {
+                        // Σ weight(β, γ) a_β b_γ over β γ = α
                         for &(left, right) in monomials.products(degree, index) {
                             let factor = product.weight(left, right, degree);
                             let a = self.coefficient(monomials, product.left, left);
@@ -123,14 +129,15 @@ impl Levels {
         self.levels.push(level);
     }
 
+    /// One coefficient, `[part][point]`, as it is stored.
     fn coefficient(&self, monomials: &Monomials, register: Register, place: Place) -> &[f64] {
         let count = monomials.of(place.degree).len();
         let position = self.slots[register] * count + place.index;
         &self.levels[place.degree - 1][position * self.width()..][..self.width()]
     }
 
-    /// The outputs' coefficients of the degree begun, `[output][monomial][point]`, with the given coefficients of the
-    /// jets; nothing is kept.
+    /// The outputs' coefficients of the degree begun, `[output][monomial][point]`. `jets(jet, monomial)` are the
+    /// coefficients of the jets, `[point]`, `None` being zero. They are not kept.
     pub fn outputs(
         &mut self,
         program: &Program,
@@ -151,7 +158,7 @@ impl Levels {
         outputs
     }
 
-    /// Makes the degree begun complete with the coefficients of the jets.
+    /// Completes the degree begun with the coefficients of the jets, as in [`Levels::outputs`], and keeps it.
     pub fn complete(
         &mut self,
         program: &Program,
@@ -165,6 +172,7 @@ impl Levels {
         self.levels[degree - 1] = level;
     }
 
+    /// One coefficient of a register in `level`, as complex numbers, `[point]`.
     fn read(
         &self,
         program: &Program,
@@ -177,12 +185,12 @@ impl Levels {
             return vec![C64::new(0.0, 0.0); self.points];
         }
         let width = self.width();
-        let own = &level[(self.slots[register] * count + index) * width..][..width];
+        let values = &level[(self.slots[register] * count + index) * width..][..width];
         match (program.arithmetic(), program.odd[register]) {
-            (Arithmetic::Real, false) => own.iter().map(|&v| C64::new(v, 0.0)).collect(),
-            (Arithmetic::Real, true) => own.iter().map(|&v| C64::new(0.0, v)).collect(),
+            (Arithmetic::Real, false) => values.iter().map(|&v| C64::new(v, 0.0)).collect(),
+            (Arithmetic::Real, true) => values.iter().map(|&v| C64::new(0.0, v)).collect(),
             (Arithmetic::Complex, _) => {
-                let (re, im) = own.split_at(self.points);
+                let (re, im) = values.split_at(self.points);
                 re.iter()
                     .zip(im)
                     .map(|(&re, &im)| C64::new(re, im))
@@ -191,7 +199,8 @@ impl Levels {
         }
     }
 
-    /// Adds what is linear in the coefficients of this degree.
+    /// Adds the terms that are linear in coefficients of this degree, register by register. `level` holds the `count`
+    /// coefficients of every slot; operands come before the register that they make.
     fn close(
         &self,
         program: &Program,
@@ -204,38 +213,46 @@ impl Levels {
             if !program.series[register] {
                 continue;
             }
-            let (before, rest) = level.split_at_mut(self.slots[register] * length);
-            let target = &mut rest[..length];
+            let (before, from_here) = level.split_at_mut(self.slots[register] * length);
+            let target = &mut from_here[..length];
             let operand = |r: Register| {
                 program.series[r].then(|| &before[self.slots[r] * length..][..length])
             };
             let base = |r: Register| &self.base[r * self.points..][..self.points];
-            let own = base(register);
+            let value = base(register);
+            // `target` holds the sum S over products of lower degrees.
             match *step {
                 Step::Constant(_) | Step::Point(_) => {}
                 Step::Jet(jet) => self.fill(program, register, target, &|index| jets(jet, index)),
+                // c_α = a_α + b_α
                 Step::Add(a, b) => {
                     self.add(target, operand(a), 1.0);
                     self.add(target, operand(b), 1.0);
                 }
+                // c_α = a_α − b_α
                 Step::Subtract(a, b) => {
                     self.add(target, operand(a), 1.0);
                     self.add(target, operand(b), -1.0);
                 }
+                // c_α = −a_α
                 Step::Negate(a) => self.add(target, operand(a), -1.0),
+                // c_α = S + a_α b_0 + a_0 b_α
                 Step::Multiply(a, b) => {
                     self.add_times(target, operand(a), 1.0, base(b));
                     self.add_times(target, operand(b), 1.0, base(a));
                 }
+                // c = a/b: c_α = (S + a_α − c_0 b_α)/b_0
                 Step::Divide(a, b) => {
                     self.add(target, operand(a), 1.0);
-                    self.add_times(target, operand(b), -1.0, own);
+                    self.add_times(target, operand(b), -1.0, value);
                     self.divide(target, base(b));
                 }
+                // c = a^r: c_α = (S + r c_0 a_α)/a_0
                 Step::Power(a, exponent) => {
-                    self.add_times(target, operand(a), exponent, own);
+                    self.add_times(target, operand(a), exponent, value);
                     self.divide(target, base(a));
                 }
+                // f with E f = sign · w · E a: f_α = S + sign · w_0 a_α
                 Step::Function {
                     argument,
                     slope,
@@ -246,6 +263,7 @@ impl Levels {
         }
     }
 
+    /// Stores the coefficients of a jet, `values(monomial)` being `[point]`.
     fn fill(
         &self,
         program: &Program,
@@ -274,6 +292,7 @@ impl Levels {
         }
     }
 
+    /// target += factor · operand
     fn add(&self, target: &mut [f64], operand: Option<&[f64]>, factor: f64) {
         let Some(operand) = operand else { return };
         for (t, x) in target.iter_mut().zip(operand) {
@@ -281,6 +300,7 @@ impl Levels {
         }
     }
 
+    /// target += factor · operand · base, with `base` by point.
     fn add_times(&self, target: &mut [f64], operand: Option<&[f64]>, factor: f64, base: &[f64]) {
         let Some(operand) = operand else { return };
         let chunks = target.chunks_exact_mut(self.points);
@@ -291,6 +311,7 @@ impl Levels {
         }
     }
 
+    /// target /= base, with `base` by point.
     fn divide(&self, target: &mut [f64], base: &[f64]) {
         for target in target.chunks_exact_mut(self.points) {
             for (t, b) in target.iter_mut().zip(base) {
@@ -300,27 +321,31 @@ impl Levels {
     }
 }
 
-/// The sum of products that a step needs of lower degrees: Σ weight(|β|, |γ|) left_β right_γ.
+/// The products of lower degrees that enter a register: S = Σ weight(|β|, |γ|) left_β right_γ over β γ = α with
+/// |β|, |γ| ≥ 1.
 struct Product {
     left: Register,
     right: Register,
     kind: Kind,
+    /// Whether left and right are i times real, in real arithmetic.
     odd: (bool, bool),
     complex: bool,
 }
 
+/// Where the products come from. E is the Euler operator, E z^p z̄^s = (|p| + |s|) z^p z̄^s.
 enum Kind {
-    /// c = a b
+    /// c = a b: S = Σ a_β b_γ.
     Product,
-    /// b c = a: minus the products.
+    /// b c = a: S = −Σ b_β c_γ.
     Quotient,
-    /// |α| a_0 c_α = Σ (r |β| − |γ|) a_β c_γ
+    /// c = a^r, from a E c = r c E a: S = Σ (r |β| − |γ|)/|α| a_β c_γ.
     Power(f64),
-    /// |α| f_α = sign Σ |β| a_β w_γ
+    /// f(a), from E f = sign · w · E a: S = sign Σ |β|/|α| a_β w_γ.
     Function(f64),
 }
 
 impl Product {
+    /// The products that enter a register; `None` for a step without, or with an operand that is no series.
     fn of(program: &Program, register: Register, step: &Step) -> Option<Self> {
         let (left, right, kind) = match *step {
             Step::Multiply(a, b) => (a, b, Kind::Product),
@@ -343,6 +368,7 @@ impl Product {
         })
     }
 
+    /// The weight of the product of coefficients of two degrees, `degree` being their sum.
     #[inline(always)]
     fn weight(&self, left: Place, right: Place, degree: usize) -> f64 {
         let (l, r, d) = (left.degree as f64, right.degree as f64, degree as f64);
@@ -354,7 +380,7 @@ impl Product {
         }
     }
 
-    /// target += factor · a b, each conjugate where its place says so.
+    /// target += factor · a b, a or b being conjugate where its place says so.
     #[inline(always)]
     fn add(
         &self,
@@ -376,7 +402,7 @@ impl Product {
             }
             return;
         }
-        // i times real: the conjugate changes sign, and i² = −1.
+        // A number that is i times real changes sign when conjugate, and the product of two such has the sign of i² = −1.
         let signs = sign(self.odd.0 && left.conjugate)
             * sign(self.odd.1 && right.conjugate)
             * sign(self.odd.0 && self.odd.1);
@@ -449,9 +475,9 @@ mod tests {
                     levels.begin(&program, &monomials, degree, &wanted);
                     let jets = |_: usize, _: usize| (degree == 1).then(|| vec![C64::new(1.0, 0.0)]);
                     if degree == 4 {
-                        let found = levels.outputs(&program, &monomials, degree, &jets);
+                        let outputs = levels.outputs(&program, &monomials, degree, &jets);
                         let binomials = [1.0, 4.0, 6.0];
-                        for (value, binomial) in found[0].iter().zip(binomials) {
+                        for (value, binomial) in outputs[0].iter().zip(binomials) {
                             let expected = binomial * expected / 24.0;
                             let error = (value[0] - expected).norm();
                             assert!(

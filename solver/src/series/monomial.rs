@@ -1,7 +1,7 @@
 //! Monomials z^p z̄^s, and the products of which each is made.
 //!
-//! What a series stands for is real, so that the coefficient of z^s z̄^p is the conjugate of that of z^p z̄^s: one
-//! of the two is stored.
+//! Series stand for real quantities, so that the coefficient of z^s z̄^p is the conjugate of that of z^p z̄^s. One of the
+//! two is stored: that with p ≥ s in lexical order.
 
 use std::collections::HashMap;
 
@@ -47,7 +47,7 @@ impl Monomial {
         }
     }
 
-    /// Whether it is its own conjugate: a product of |z_j|².
+    /// Whether it equals its conjugate, as a product of |z_j|² does.
     pub fn is_real(&self) -> bool {
         self.z == self.conj
     }
@@ -58,30 +58,30 @@ impl Monomial {
         pairs.map(|(&p, &s)| f64::from(p) - f64::from(s))
     }
 
-    /// The product of two.
-    pub fn times(&self, other: &Monomial) -> Monomial {
+    /// The product with another monomial.
+    pub fn times(&self, factor: &Monomial) -> Monomial {
         let sum = |a: &[u8], b: &[u8]| a.iter().zip(b).map(|(a, b)| a + b).collect();
         Monomial {
-            z: sum(&self.z, &other.z),
-            conj: sum(&self.conj, &other.conj),
+            z: sum(&self.z, &factor.z),
+            conj: sum(&self.conj, &factor.conj),
         }
     }
 
-    /// The exponent of one amplitude or conjugate in it.
+    /// The exponent of `one`, a single z_j or z̄_j, in this monomial.
     pub fn exponent_of(&self, one: &Monomial) -> f64 {
-        let own = self.z.iter().chain(&self.conj);
-        let pairs = own.zip(one.z.iter().chain(&one.conj));
+        let exponents = self.z.iter().chain(&self.conj);
+        let pairs = exponents.zip(one.z.iter().chain(&one.conj));
         pairs.map(|(e, o)| f64::from(e * o)).sum()
     }
 
-    /// Self / other, where other divides it.
-    pub fn over(&self, other: &Monomial) -> Option<Monomial> {
+    /// The quotient by another monomial; `None` where that does not divide this one.
+    pub fn over(&self, divisor: &Monomial) -> Option<Monomial> {
         let difference = |a: &[u8], b: &[u8]| -> Option<Vec<u8>> {
             a.iter().zip(b).map(|(a, b)| a.checked_sub(*b)).collect()
         };
         Some(Monomial {
-            z: difference(&self.z, &other.z)?,
-            conj: difference(&self.conj, &other.conj)?,
+            z: difference(&self.z, &divisor.z)?,
+            conj: difference(&self.conj, &divisor.conj)?,
         })
     }
 
@@ -107,37 +107,39 @@ impl Monomial {
         factors.join(" ")
     }
 
-    /// All monomials of a degree, in order.
+    /// All monomials of a degree, in falling lexical order of (p, s).
     fn all(modes: usize, degree: usize) -> Vec<Monomial> {
-        fn fill(exponents: &mut Vec<u8>, left: usize, count: usize, found: &mut Vec<Vec<u8>>) {
+        /// Completes `exponents` to `count` numbers in all ways in which the new ones sum to `left`.
+        fn fill(exponents: &mut Vec<u8>, left: usize, count: usize, all: &mut Vec<Vec<u8>>) {
             if exponents.len() + 1 == count {
                 exponents.push(left as u8);
-                found.push(exponents.clone());
+                all.push(exponents.clone());
                 exponents.pop();
                 return;
             }
-            for own in (0..=left).rev() {
-                exponents.push(own as u8);
-                fill(exponents, left - own, count, found);
+            for next in (0..=left).rev() {
+                exponents.push(next as u8);
+                fill(exponents, left - next, count, all);
                 exponents.pop();
             }
         }
-        let mut found = Vec::new();
-        fill(&mut Vec::new(), degree, 2 * modes, &mut found);
+        let mut all = Vec::new();
+        fill(&mut Vec::new(), degree, 2 * modes, &mut all);
         let split = |e: Vec<u8>| Monomial {
             z: e[..modes].to_vec(),
             conj: e[modes..].to_vec(),
         };
-        found.into_iter().map(split).collect()
+        all.into_iter().map(split).collect()
     }
 }
 
-/// A stored coefficient, taken as it is or conjugate.
+/// Where the coefficient of a monomial is stored.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     pub degree: usize,
-    /// Among those of its degree.
+    /// Position among the stored monomials of its degree.
     pub index: usize,
+    /// Whether the coefficient is the conjugate of the stored one.
     pub conjugate: bool,
 }
 
@@ -147,12 +149,12 @@ pub struct Monomials {
     modes: usize,
     stored: Vec<Vec<Monomial>>,
     places: HashMap<Monomial, Place>,
-    /// By degree and stored monomial: all (β, γ) with β γ = α and neither of degree 0.
+    /// All (β, γ) with β γ = α and neither of degree 0, `[degree][index of α]`.
     products: Vec<Vec<Vec<(Place, Place)>>>,
 }
 
 impl Monomials {
-    /// Those of degree 0 in the amplitudes of `modes` modes.
+    /// The monomial 1, of degree 0, in the amplitudes of `modes` modes.
     pub fn new(modes: usize) -> Self {
         let mut monomials = Monomials {
             modes,
@@ -189,7 +191,7 @@ impl Monomials {
         &self.products[degree][index]
     }
 
-    /// One degree more.
+    /// Adds the monomials of the next degree.
     pub fn extend(&mut self) {
         let degree = self.stored.len();
         let all = Monomial::all(self.modes, degree);
@@ -213,16 +215,17 @@ impl Monomials {
         self.stored.push(stored);
     }
 
+    /// All (β, γ) with β γ = α and neither of degree 0.
     fn factorings(&self, alpha: &Monomial) -> Vec<(Place, Place)> {
-        let mut found = Vec::new();
+        let mut pairs = Vec::new();
         for degree in 1..alpha.degree() {
             for beta in Monomial::all(self.modes, degree) {
                 if let Some(gamma) = alpha.over(&beta) {
-                    found.push((self.places[&beta], self.places[&gamma]));
+                    pairs.push((self.places[&beta], self.places[&gamma]));
                 }
             }
         }
-        found
+        pairs
     }
 }
 

@@ -1,18 +1,20 @@
-//! A residual prepared for truncated polynomials: powers and functions by the differential equations that they
-//! satisfy, branches chosen, what is not asked for left out.
+//! A residual prepared for truncated polynomials: the branches of switches are chosen, and operations that no wanted output
+//! needs are left out.
 //!
-//! With the Euler operator E z^p z̄^s = (|p| + |s|) z^p z̄^s, a derivation:
-//! E(a^r) a = r a^r E(a),  E(exp a) = exp(a) E(a),  E(sin a) = cos(a) E(a),  E(tan a) = (1 + tan² a) E(a), …
+//! Powers and functions are computed by the differential equations that they satisfy. The Euler operator
+//! E z^p z̄^s = (|p| + |s|) z^p z̄^s obeys the product rule, so that
+//!
+//! a E(a^r) = r a^r E(a),  E(exp a) = exp(a) E(a),  E(sin a) = cos(a) E(a),  E(tan a) = (1 + tan² a) E(a), …
 
 use crate::model::{Function, Kernel, Operation, Register, choose};
 use std::collections::HashMap;
 
-/// Whether every coefficient is real, or i times real: then half of the work, and less, does.
+/// The numbers that coefficients are. Real arithmetic takes half the work or less.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arithmetic {
-    /// One number a coefficient and point.
+    /// Every coefficient is real, or every coefficient of a register is i times real: one number at a point.
     Real,
-    /// Two.
+    /// Any: two numbers at a point.
     Complex,
 }
 
@@ -43,7 +45,7 @@ pub(super) enum Step {
 #[derive(Clone, Debug)]
 pub struct Program {
     pub(super) steps: Vec<Step>,
-    /// Whether a register depends on jets; the others are real numbers at the points.
+    /// Whether a register depends on jets. If not, it is a real number at each point.
     pub(super) series: Vec<bool>,
     /// Whether a register's coefficients are i times real, in real arithmetic.
     pub(super) odd: Vec<bool>,
@@ -240,8 +242,8 @@ impl Builder {
     }
 
     fn function(&mut self, function: Function, argument: Register) -> Register {
-        if let Some(&known) = self.made.get(&(function, argument)) {
-            return known;
+        if let Some(&register) = self.made.get(&(function, argument)) {
+            return register;
         }
         let step = |function, slope, sign| Step::Function {
             function,

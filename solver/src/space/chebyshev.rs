@@ -34,14 +34,14 @@ impl GridKind {
         }
     }
 
-    /// The position of the first of another grid's points among this one's, where all of them are
-    /// points of this one in a row.
-    pub fn start_of(self, other: GridKind) -> Option<usize> {
-        match (self, other) {
+    /// The position in this grid of the first point of `part`, where the points of `part` are consecutive points of this
+    /// grid; otherwise `None`.
+    pub fn start_of(self, part: GridKind) -> Option<usize> {
+        match (self, part) {
             (GridKind::Lobatto(n), GridKind::Interior(m)) if n == m + 2 => Some(1),
             (GridKind::Lobatto(_), GridKind::Lower) => Some(0),
             (GridKind::Lobatto(n), GridKind::Upper) => Some(n - 1),
-            _ => (self == other).then_some(0),
+            _ => (self == part).then_some(0),
         }
     }
 }
@@ -231,14 +231,14 @@ impl Series {
     /// The series of some coefficients, with derivatives to `order`.
     pub fn new(coefficients: Vec<f64>, order: usize) -> Self {
         let mut derivatives = vec![coefficients];
-        for known in 0..order {
-            let next = differentiate(&derivatives[known]);
+        for lower in 0..order {
+            let next = differentiate(&derivatives[lower]);
             derivatives.push(next);
         }
         Series { derivatives }
     }
 
-    /// Its own coefficients.
+    /// The coefficients of the series itself.
     pub fn coefficients(&self) -> &[f64] {
         &self.derivatives[0]
     }
@@ -334,7 +334,7 @@ mod tests {
                         let factor: f64 = (0..order).map(|i| f64::from(n - i)).product();
                         let matrix = from.derivative_on(&to, order as usize);
                         for (i, xi) in to.nodes.iter().enumerate() {
-                            let found: f64 = from
+                            let computed: f64 = from
                                 .nodes
                                 .iter()
                                 .enumerate()
@@ -342,7 +342,7 @@ mod tests {
                                 .sum();
                             let power = (n - order).max(0);
                             let expected = factor * xi.powi(power);
-                            assert!((found - expected).abs() < 1e-10, "ξ^{n}, order {order}");
+                            assert!((computed - expected).abs() < 1e-10, "ξ^{n}, order {order}");
                         }
                     }
                 }
@@ -368,7 +368,7 @@ mod tests {
         let grid = Grid::new(GridKind::Lobatto(10));
         let weights = clenshaw_curtis(10);
         for n in 0..10_i32 {
-            let found: f64 = weights
+            let computed: f64 = weights
                 .iter()
                 .zip(&grid.nodes)
                 .map(|(w, x)| w * x.powi(n))
@@ -378,7 +378,7 @@ mod tests {
             } else {
                 0.0
             };
-            assert!((found - expected).abs() < 1e-14, "ξ^{n}: {found}");
+            assert!((computed - expected).abs() < 1e-14, "ξ^{n}: {computed}");
         }
     }
 
@@ -396,9 +396,9 @@ mod tests {
             let expected = if n == 4 { 1.0 } else { 0.0 };
             assert!((c - expected).abs() < 1e-14, "coefficient {n}");
         }
-        let found = Series::new(series, 2).values(1.0, 2);
-        for (found, expected) in found.iter().zip([1.0, 16.0, 80.0]) {
-            assert!((found - expected).abs() < 1e-11);
+        let values = Series::new(series, 2).values(1.0, 2);
+        for (value, expected) in values.iter().zip([1.0, 16.0, 80.0]) {
+            assert!((value - expected).abs() < 1e-11);
         }
     }
 }

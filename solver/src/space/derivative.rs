@@ -5,7 +5,7 @@ use crate::numerics::dense::vectorised;
 use faer::Mat;
 use std::sync::Arc;
 
-/// A derivative from the points of a profile to others.
+/// A derivative by y, from values at the points of a profile to values at the points of a row.
 #[derive(Clone, Debug)]
 pub enum Derivative {
     /// None, and the points are among those of the profile, one after another.

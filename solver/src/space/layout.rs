@@ -27,7 +27,7 @@ impl Block {
         self.offset..self.offset + self.len
     }
 
-    /// Its own part of all unknowns or equations.
+    /// The part of a vector of all unknowns, or of all equations, that belongs to this block.
     pub fn of<'x, T>(&self, all: &'x [T]) -> &'x [T] {
         &all[self.range()]
     }

@@ -21,7 +21,7 @@ use std::fmt;
 use std::sync::{Arc, Mutex};
 use stretch::Stretch;
 
-/// A place across: ξ, so that the ends are exact.
+/// A place in the interval, kept as ξ so that the ends are exact.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Place(f64);
 
@@ -69,7 +69,8 @@ type MatrixKey = (GridKind, GridKind, usize);
 /// Differentiation matrices of [−1, 1], made once and shared by all spaces of a study.
 #[derive(Default)]
 pub struct Matrices {
-    known: Mutex<HashMap<MatrixKey, Arc<Mat<f64>>>>,
+    /// Those that have been computed.
+    computed: Mutex<HashMap<MatrixKey, Arc<Mat<f64>>>>,
     /// Matrices whose entries these are, times the factors of a noise.
     disturbed: Option<(Arc<Matrices>, Noise)>,
 }
@@ -77,17 +78,17 @@ pub struct Matrices {
 impl Matrices {
     /// d^order/dξ^order from values on one grid to values on another.
     fn get(&self, from: GridKind, to: GridKind, order: usize) -> Arc<Mat<f64>> {
-        let mut known = match self.known.lock() {
+        let mut computed = match self.computed.lock() {
             Ok(guard) => guard,
             Err(poisoned) => poisoned.into_inner(),
         };
-        known
+        computed
             .entry((from, to, order))
-            .or_insert_with(|| Arc::new(self.made(from, to, order)))
+            .or_insert_with(|| Arc::new(self.compute(from, to, order)))
             .clone()
     }
 
-    fn made(&self, from: GridKind, to: GridKind, order: usize) -> Mat<f64> {
+    fn compute(&self, from: GridKind, to: GridKind, order: usize) -> Mat<f64> {
         let Some((exact, noise)) = &self.disturbed else {
             return Grid::new(from).derivative_on(&Grid::new(to), order);
         };
@@ -104,7 +105,7 @@ impl Matrices {
 /// An interval with its collocation, or a point.
 #[derive(Clone)]
 pub struct Space {
-    /// The ends; nothing without a cross-stream coordinate.
+    /// The ends in y; `None` without a cross-stream coordinate.
     ends: Option<[f64; 2]>,
     stretch: Stretch,
     matrices: Arc<Matrices>,
@@ -135,22 +136,22 @@ impl Space {
     pub fn disturbed(&self, noise: Noise) -> Self {
         Space {
             matrices: Arc::new(Matrices {
-                known: Mutex::default(),
+                computed: Mutex::default(),
                 disturbed: Some((self.matrices.clone(), noise)),
             }),
             ..self.clone()
         }
     }
 
-    /// The same interval in the coordinate of another space.
-    pub fn like(&self, other: &Space) -> Self {
+    /// The same interval in the stretched coordinate of another space.
+    pub fn like(&self, template: &Space) -> Self {
         Space {
-            stretch: other.stretch,
+            stretch: template.stretch,
             ..self.clone()
         }
     }
 
-    /// Its ends; nothing for a point.
+    /// The ends in y; `None` for a point.
     pub fn ends(&self) -> Option<[f64; 2]> {
         self.ends
     }
@@ -160,7 +161,7 @@ impl Space {
         self.ends.is_none()
     }
 
-    /// The differentiation matrices that it shares with others.
+    /// The differentiation matrices, which all spaces of a study share.
     pub fn matrices(&self) -> &Arc<Matrices> {
         &self.matrices
     }
@@ -207,14 +208,14 @@ impl Space {
         nodes.map(|eta| Place(self.stretch.xi(eta))).collect()
     }
 
-    /// dξ/dy = 2/h: what a derivative is as large as; one for a point.
+    /// dξ/dy = 2/h, in units of 1/y: the size of one derivative by y. One for a point.
     pub fn rate(&self) -> f64 {
         self.ends
             .map_or(1.0, |[lower, upper]| 2.0 / (upper - lower))
     }
 
-    /// ∂y^order of the interpolant through values at some points, at others. In a stretched coordinate `order` is at
-    /// most 2.
+    /// ∂y^order of the interpolant through values at the points `from`, evaluated at the points `to`. In a stretched
+    /// coordinate `order` is at most 2.
     pub fn derivative(&self, from: Points, to: Points, order: usize) -> Derivative {
         if let Some(start) = from.0.start_of(to.0).filter(|_| order == 0) {
             let count = to.count();
@@ -336,7 +337,7 @@ impl Space {
         }
     }
 
-    /// Whether its polynomials are in a coordinate of their own.
+    /// Whether its polynomials are in a stretched coordinate.
     pub fn is_stretched(&self) -> bool {
         self.stretch != Stretch::None
     }
@@ -378,10 +379,10 @@ mod tests {
         ] {
             let exact: [fn(f64) -> f64; 3] = [|y| y.powi(3), |y| 3.0 * y * y, |y| 6.0 * y];
             for (order, exact) in exact.iter().enumerate() {
-                let found = space.derivative(column, to, order).of(&values);
-                for (place, found) in space.places(to).into_iter().zip(found) {
+                let derivative = space.derivative(column, to, order).of(&values);
+                for (place, value) in space.places(to).into_iter().zip(derivative) {
                     let expected = exact(space.y(place));
-                    assert!((found.re - expected).abs() < 1e-11 * 64.0, "order {order}");
+                    assert!((value.re - expected).abs() < 1e-11 * 64.0, "order {order}");
                 }
             }
         }
@@ -419,16 +420,15 @@ mod tests {
         assert!(last(&fine) < 1e-6 * last(&coarse));
         for y in [1.9, 2.0, 2.03, 3.5] {
             let place = wide.place(y);
-            let found = wide.evaluate(&fine, place, 2);
+            let computed = wide.evaluate(&fine, place, 2);
             let value = steep(y);
             let slope = (1.0 - value * value) / 0.05;
             let expected = [value, slope, -2.0 * value * slope / 0.05];
-            for (found, (expected, size)) in
-                found.iter().zip(expected.iter().zip([1.0, 20.0, 400.0]))
-            {
+            let sizes = [1.0, 20.0, 400.0];
+            for ((computed, expected), size) in computed.iter().zip(expected).zip(sizes) {
                 assert!(
-                    (found - expected).abs() < 1e-6 * size,
-                    "{found} for {expected} at {y}"
+                    (computed - expected).abs() < 1e-6 * size,
+                    "{computed} for {expected} at {y}"
                 );
             }
         }

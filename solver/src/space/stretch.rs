@@ -6,9 +6,9 @@
 
 use super::chebyshev::Series;
 
-/// Places at which the steepest layer is looked for.
+/// Number of places at which the steepest layer is looked for: five for each polynomial of the highest degree.
 const SAMPLES: usize = 2000;
-/// A layer wider than this part of the half-interval needs no coordinate of its own.
+/// A layer wider than this part of the half-interval is resolved without a stretched coordinate.
 const WIDE: f64 = 0.5;
 
 /// The coordinate of a base state's series.
@@ -176,17 +176,17 @@ mod tests {
         for xi in [-0.9, 0.2, 0.29, 0.3, 0.8] {
             let s: f64 = xi - centre;
             let square = s * s + width * width;
-            let found = layer.compose(xi, &[layer.eta(xi), 1.0, 0.0, 0.0]);
+            let derivatives = layer.compose(xi, &[layer.eta(xi), 1.0, 0.0, 0.0]);
             let exact = [
                 1.0 / square.sqrt(),
                 -s / square.powf(1.5),
                 (2.0 * s * s - width * width) / square.powf(2.5),
             ];
-            for (found, exact) in found[1..].iter().zip(exact) {
+            for (computed, exact) in derivatives[1..].iter().zip(exact) {
                 let exact = exact / rate;
                 assert!(
-                    (found - exact).abs() < 1e-12 * exact.abs() + 1e-9,
-                    "{found} for {exact}"
+                    (computed - exact).abs() < 1e-12 * exact.abs() + 1e-9,
+                    "{computed} for {exact}"
                 );
             }
         }
