@@ -293,3 +293,20 @@ fn explained() {
         assert!(answer.out.contains(line), "{line} in {}", answer.out);
     }
 }
+
+/// Heat leaves through walls of fixed temperature: ∫ θ is conserved for no choice of the switches, and the claim is refused.
+#[test]
+fn a_claim_that_holds_for_no_choice_of_the_switches() {
+    let shipped = std::fs::read_to_string("../spec/models/rayleigh_benard.model").expect("a model");
+    let claim = "conserved integral(theta);";
+    let text = shipped.replace("conserved integral(u);", claim);
+    assert!(text.contains(claim));
+    let path = written("claimed_heat.model", &text);
+    let answer = landau(&["check", &path.display().to_string()]);
+    assert_eq!(answer.status, 2, "{}", answer.out);
+    let message = "the integral of theta is not conserved at the default parameters, for any choice of the switches";
+    assert!(answer.err.contains(message), "{}", answer.err);
+    let path = written("claimed_momentum.model", &shipped);
+    let answer = landau(&["check", &path.display().to_string()]);
+    assert_eq!(answer.status, 0, "{}", answer.err);
+}
