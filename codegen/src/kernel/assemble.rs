@@ -2,7 +2,7 @@
 
 use super::ModelKernels;
 use super::polarise::form_tables;
-use super::program::{operations, residual_jets};
+use super::program::{Programs, operations, residual_jets};
 use super::structure::{Parts, offsets};
 use crate::derive::{BaseCheck, Case, CaseClosure, Derivation, Opener, base_value};
 use crate::graph::{Graph, Id, Jet, Node, Variable};
@@ -105,7 +105,7 @@ impl Assembler<'_> {
         let residual_outputs = self.residuals();
         let residual_jets = residual_jets(self.graph, &residual_outputs);
         let forms = self.forms();
-        let (kernels, residuals) = self.lowered(&residual_outputs, &residual_jets);
+        let Programs { kernels, residuals } = self.lowered(&residual_outputs, &residual_jets);
         let structure = self.structure(Parts {
             base,
             form_jets,

@@ -8,6 +8,14 @@ use crate::graph::{Graph, Id, Node};
 use landau_contract::*;
 use std::collections::{BTreeSet, HashMap};
 
+/// Straight-line programs, each with the name by which the solver asks for it.
+pub(super) struct Programs {
+    /// Of the operators, over the point state.
+    pub kernels: Vec<(KernelId, Kernel)>,
+    /// Of the unexpanded residuals, over the point state and the jets of the full state.
+    pub residuals: Vec<(ResidualId, Kernel)>,
+}
+
 impl Assembler<'_> {
     /// The base fields that the spec gives in closed form, to the same order as those that are solved for.
     pub(super) fn closed(&mut self) {
@@ -24,12 +32,12 @@ impl Assembler<'_> {
         self.expressions.push((KernelId::Closed, closed));
     }
 
-    /// The kernels of the operators and those of the residuals.
+    /// Lowers the operators and the residuals.
     pub(super) fn lowered(
         &self,
         residuals: &[(ResidualId, Vec<Id>)],
         residual_jets: &[Jet],
-    ) -> (Vec<(KernelId, Kernel)>, Vec<(ResidualId, Kernel)>) {
+    ) -> Programs {
         let (parameters, fields) = (self.model.parameters.len(), self.model.fields.len());
         let state = StateLayout::new(parameters, fields, self.base_order);
         let at_base = |node: &Node| match node {
@@ -53,7 +61,10 @@ impl Assembler<'_> {
         let kernels = kernels.map(|(id, ids)| (*id, lower(&RESIDUAL_INPUTS[..1], &at_base, ids)));
         let residuals = residuals.iter();
         let residuals = residuals.map(|(id, ids)| (*id, lower(&RESIDUAL_INPUTS, &at_state, ids)));
-        (kernels.collect(), residuals.collect())
+        Programs {
+            kernels: kernels.collect(),
+            residuals: residuals.collect(),
+        }
     }
 
     /// The unexpanded residuals in the fields' derivatives, laws opened.

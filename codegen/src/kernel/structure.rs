@@ -1,15 +1,15 @@
-//! What the inputs and outputs of a model's kernels mean.
+//! The structure of a model: the meaning of the inputs and outputs of its kernels.
 
 use super::assemble::Assembler;
 use crate::model::Model;
 use landau_contract::*;
 
-/// What the kernels of the operators read and write, and what they cost.
+/// The parts of a structure that the assembly of kernels determines.
 pub(super) struct Parts {
     pub base: BaseInfo,
     /// Jets that N2 and N3 multiply.
     pub form_jets: Vec<Jet>,
-    /// How many coefficients N2 and N3 have.
+    /// Number of distinct coefficients of N2 and N3.
     pub form_coefficients: usize,
     pub cases: Table<CaseId, CaseInfo>,
     pub amplitude: AmplitudeInfo,
@@ -20,7 +20,7 @@ pub(super) struct Parts {
     pub operations: [usize; 2],
 }
 
-/// Points and values of a collocated system.
+/// The offsets of a system, as numbers of points and values.
 pub(super) fn offsets<Row: Clone, Column: Clone>(
     offsets: &crate::derive::Offsets<Row, Column>,
 ) -> OffsetsInfo<Row, Column> {

@@ -11,8 +11,8 @@ use crate::graph::{BalanceId, FieldId, Graph, Id, LawId, Node, Operator, Table};
 use crate::syntax::tree::*;
 use std::collections::BTreeSet;
 
-/// Without a word of the user: ∫ Σ |q|² dy = 1, over the profiles but for gauges that no time derivative holds, such
-/// as a pressure: their size depends on the units of the balances.
+/// The amplitude of a spec without such a block: ∫ Σ |q|² dy = 1 over the profiles. Gauges that no time derivative holds,
+/// such as a pressure, are left out, since their size depends on the units of the balances.
 pub(super) fn default_amplitude(
     fields: &Table<FieldId, Field>,
     balances: &Table<BalanceId, Balance>,
@@ -20,7 +20,7 @@ pub(super) fn default_amplitude(
     laws: &Table<LawId, Law>,
     names: &mut Names,
 ) -> Amplitude {
-    let moving = moving_fields(&names.graph, balances, laws);
+    let moving = moving_fields(names.graph, balances, laws);
     let is_gauge = |field: &FieldId| {
         let mut closures = mean.iter();
         closures
@@ -41,7 +41,7 @@ pub(super) fn default_amplitude(
     }
 }
 
-/// Fields under a time derivative, those that laws there depend on among them.
+/// Fields under a time derivative, including those on which a law there depends.
 fn moving_fields(
     graph: &Graph,
     balances: &Table<BalanceId, Balance>,
