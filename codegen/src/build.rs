@@ -168,7 +168,7 @@ pub fn read_sources(path: &Path) -> io::Result<Sources> {
     })
 }
 
-/// The regular files of a folder whose names end so.
+/// The regular files of a folder whose names have the given ending.
 fn files(folder: &Path, extension: &str) -> io::Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -190,7 +190,7 @@ fn read(path: &Path, root: &Path) -> io::Result<SourceFile> {
     })
 }
 
-/// The text of a spec or a law file; reads no more of it than such a file may have.
+/// The text of a spec or a law file. It stops reading just beyond the largest size of such a file.
 fn read_text(path: &Path) -> io::Result<String> {
     let refuse = |reason: String| io::Error::new(io::ErrorKind::InvalidData, reason);
     let is_open = DESCRIPTORS.iter().any(|place| path.starts_with(place));

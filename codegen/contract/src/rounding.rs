@@ -1,15 +1,14 @@
-//! Running error analysis: a number with a bound of what rounding has done to it.
+//! Running error analysis: a number with a bound of its rounding error.
 
 use crate::number::Number;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A real number with a bound of what rounding has done to it on the way, in units of the machine's
-/// precision: running error analysis to first order.
+/// A real number with a bound of its rounding error, to first order in the machine's precision ε.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WithRounding {
-    /// The number itself.
+    /// The computed number.
     pub value: f64,
-    /// |error|/ε
+    /// Bound of |error|/ε.
     pub size: f64,
 }
 

@@ -17,7 +17,7 @@ pub struct BaseRow {
     pub residual: Id,
 }
 
-/// What the base state has to obey.
+/// Balances and integrals of the base state, and the number of its conditions.
 pub(super) struct BaseProblem {
     pub rows: Table<BaseRowId, BaseRow>,
     pub solved: Table<SolvedId, FieldId>,
@@ -26,7 +26,7 @@ pub(super) struct BaseProblem {
     pub offsets: Offsets<BaseRowId, SolvedId>,
     /// Integrands and values.
     pub integrals: Vec<(Id, Id)>,
-    /// How many conditions (at walls and integrals) determine the base state.
+    /// Number of conditions (at walls and integrals) that determine the base state.
     pub conditions: usize,
 }
 
@@ -37,7 +37,7 @@ struct BaseRows {
 }
 
 impl Deriver<'_> {
-    /// Which balances, conditions and integrals the base state has to obey.
+    /// The problem of the base state, or a mistake if balances and unknown fields do not match.
     pub(super) fn base_problem(
         &mut self,
         balances: &Table<BalanceId, Form>,
@@ -128,7 +128,7 @@ impl Deriver<'_> {
         BaseRows { rows, orders }
     }
 
-    /// More or fewer balances than profiles that they are solved for.
+    /// The mistake of more or fewer balances than unknown profiles.
     fn miscounted(
         &self,
         profiles: &Table<SolvedId, FieldId>,

@@ -1,4 +1,4 @@
-//! What the ends of the interval say of the base state in one case.
+//! The conditions of the base state in one case.
 
 use super::deriver::Deriver;
 use super::wall::{BaseCondition, CaseProblem};
@@ -7,14 +7,14 @@ use crate::graph::{FieldId, Graph, Id, Node};
 use crate::model::{Closure, Condition, End};
 use std::cmp::Reverse;
 
-/// A condition that the base state, being in closed form, has to meet.
+/// A condition on base fields in closed form: it cannot be imposed, so the solver checks it.
 #[derive(Clone, Debug)]
 pub struct BaseCheck {
     /// The end of the interval at which it holds.
     pub end: End,
     /// In terms of the full state.
     pub residual: Id,
-    /// Where the spec says so.
+    /// Place of its text in the spec.
     pub location: Location,
 }
 
@@ -75,7 +75,7 @@ pub(super) fn base_conditions(
     Some(conditions)
 }
 
-/// How many integral conditions the base state has: prescribed ones, and those of its unknown numbers.
+/// Number of integral conditions of the base state: prescribed ones, and those of its unknown numbers.
 fn integral_conditions(deriver: &Deriver, problem: &CaseProblem) -> usize {
     if problem.solved.is_empty() {
         return 0;
@@ -85,7 +85,7 @@ fn integral_conditions(deriver: &Deriver, problem: &CaseProblem) -> usize {
     model.base.integrals.len() + model.mean.iter().filter(is_solved).count()
 }
 
-/// Too few or too many conditions of the base state.
+/// The mistake of too few or too many conditions of the base state.
 fn miscounted(
     deriver: &Deriver,
     problem: &CaseProblem,

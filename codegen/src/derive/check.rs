@@ -1,4 +1,4 @@
-//! What the form of a model must have before operators make sense of it.
+//! Checks of a model before its operators are derived.
 
 use super::deriver::Deriver;
 use super::linear::DirectTerm;

@@ -121,6 +121,7 @@ impl Proof<'_> {
             .collect();
         let mut sums = Vec::new();
         for last in 0..columns.len() {
+            // Σ_c x_c L†ℓ_c = −L†ℓ_last, one equation for each field, with numbers x_c
             let mut system = LinearSystem::new(deriver.graph, last);
             for field in deriver.model.profiles() {
                 let entries = (0..last).map(|c| (c, images[c][field])).collect();
@@ -161,12 +162,14 @@ impl Proof<'_> {
         column: &[(BalanceId, Id)],
     ) -> Result<Option<Form>, Undecided> {
         let order = deriver.order;
+        // S = Σ_i ℓ_i P_i
         let mut sum = Form::default();
         for &(row, weight) in column {
             let balance = self.balance(deriver, row, weight, order);
             sum.add(deriver.graph, &balance, &Rational::one());
         }
         sum.terms.remove(&Vec::new());
+        // E_q S = 0 at the second degree, if need be with the correction Σ x q'_j P_k
         if !is_divergence(deriver, &sum, 2)? {
             let Some(correction) = self.correction(deriver, &sum)? else {
                 return Ok(None);
@@ -201,6 +204,7 @@ impl Proof<'_> {
                 products.push(balance.multiply(deriver.graph, &factor, order));
             }
         }
+        // E_q (S + Σ x q'_j P_k) = 0: one equation for each field and each monomial
         let mut system = LinearSystem::new(deriver.graph, products.len());
         for &field in &fields {
             let right = variation(deriver.graph, &sum.degree(2), field)?;
@@ -240,6 +244,8 @@ impl Proof<'_> {
             return Ok(true);
         }
         for degree in 1..=deriver.order {
+            // The flux at an end, in the jets that the conditions leave free, integrates to zero along x and t if its
+            // variational derivative by every free jet vanishes.
             let flux = flux(deriver.graph, &sum.degree(degree));
             for (end, place, said) in &self.ends {
                 if flux.terms.is_empty() {

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// coefficient(y) · ∂(jet): a term of an operator from columns to rows.
 #[derive(Clone, Copy, Debug)]
 pub struct Term<Row, Column> {
-    /// Where it stands.
+    /// The row that holds the term.
     pub row: Row,
     /// The derivative it multiplies.
     pub jet: Jet<Column>,

@@ -1,4 +1,4 @@
-//! How many points each balance and each field need on the cross-stream interval.
+//! The numbers of points of each balance and of values of each field on the cross-stream interval.
 //!
 //! A system of mixed order is collocated by numbers c_i ≥ 0 of its balances and t_j of its fields with
 //!
@@ -37,7 +37,7 @@ pub fn offsets<Row, Column>(orders: &Orders<Row, Column>) -> Option<Offsets<Row,
     let fields = orders.first().map_or(0, |row| row.len());
     let mut rows = vec![0_i64; orders.len()];
     let mut columns = vec![0_i64; fields];
-    // Each round raises what has to be raised; the assignment being of largest weight, it ends.
+    // Each round raises the offsets that violate a condition. It ends because the assignment has the largest weight.
     loop {
         for (j, column) in columns.iter_mut().enumerate() {
             let needed = (0..rows.len()).filter_map(|i| Some(rows[i] + weights[i][j]?));

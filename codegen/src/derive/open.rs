@@ -16,7 +16,7 @@ pub struct Opener<'a> {
 }
 
 impl<'a> Opener<'a> {
-    /// Of the given parts.
+    /// An opener for the laws, closed base fields and unknown numbers of a model.
     pub fn new(
         laws: &'a Table<LawId, Law>,
         closed: &'a Table<FieldId, Option<Id>>,
@@ -110,7 +110,7 @@ impl<'a> Opener<'a> {
     }
 }
 
-/// Replaces each unevaluated derivative by what the chain rule gives.
+/// Carries out each unevaluated derivative by the chain rule.
 pub fn carry_out(graph: &mut Graph, id: Id, uniform: &Table<FieldId, bool>) -> Id {
     let mut done: HashMap<Id, Id> = HashMap::new();
     // Children come first, so that inner derivatives are carried out before outer ones.

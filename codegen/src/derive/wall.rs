@@ -1,4 +1,4 @@
-//! What the two ends make of the operators: base conditions as rules, direct conditions reduced.
+//! Conditions at the two ends: those of the base state as rules for its atoms, those of the perturbation reduced.
 
 use super::boundary::{
     BoundaryForm, Combination, Reduced, Simplifier, boundary_form, reduce, split,
@@ -40,7 +40,7 @@ pub struct BaseCondition {
     pub residual: Id,
 }
 
-/// What a case is derived from.
+/// The operators and tables that the derivation of a case reads.
 #[derive(Clone, Copy)]
 pub(super) struct CaseProblem<'a> {
     /// The balances expanded, not divided.
@@ -50,16 +50,16 @@ pub(super) struct CaseProblem<'a> {
     pub linear: &'a [DirectTerm],
     pub adjoint: &'a [AdjointTerm],
     pub divisors: &'a Table<BalanceId, Id>,
-    /// How many boundary conditions the balances ask for.
+    /// Number of boundary conditions that the balances need.
     pub needed: usize,
     pub pairing: &'a Table<BalanceId, FieldId>,
     pub solved: &'a [FieldId],
     pub switches: &'a [ParameterId],
-    /// How many conditions the base state needs.
+    /// Number of conditions that the base state needs.
     pub base_conditions: usize,
 }
 
-/// The boundary form and what each end makes of it.
+/// The boundary form, and the reduced conditions of each end.
 pub(super) struct Walls {
     pub form: BoundaryForm,
     pub reduced: Vec<(End, Reduced<FieldId>)>,
@@ -82,8 +82,8 @@ pub(super) fn base_rules(graph: &mut Graph, conditions: &[BaseCondition]) -> Bas
         let Some(&(order, field)) = atoms.last() else {
             continue;
         };
-        // A law depends on values of the fields, so it is a coefficient beside a derivative; where
-        // it could hide a further dependence the condition is left alone.
+        // A law depends on the values of fields, so that beside a derivative it is a coefficient. A law that may hide
+        // the atom itself leaves the condition unsolved.
         let hides = |n: &Node| matches!(n, Node::BaseLaw(atom) if order == 0 || atom.y > 0);
         if graph.any(condition.residual, hides) {
             continue;
@@ -109,7 +109,8 @@ pub(super) fn base_rules(graph: &mut Graph, conditions: &[BaseCondition]) -> Bas
     rules
 }
 
-/// An expression at one end: the coordinate's value put in, base conditions used.
+/// An expression at one end: the coordinate replaced by its value, base atoms by the values that the base conditions
+/// give them.
 pub(super) fn at_end(graph: &mut Graph, place: Id, end: End, rules: &BaseRules, id: Id) -> Id {
     graph.substitute(id, &mut |_, node| match node {
         Node::Coordinate => Some(place),

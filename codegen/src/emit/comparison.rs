@@ -1,11 +1,11 @@
-//! What a comparison has on its two sides, as formulas.
+//! The two sides of a comparison as formulas.
 
 use crate::derive::Derivation;
 use crate::errata::{Comparison, Difference, Subject};
 use crate::formula::{self, Arrangement, Formula, Letters, Mark};
 use crate::graph::Jet;
 
-/// A term as it was printed and as it was derived, 0 where there is none.
+/// A term as it was printed and as it was derived; 0 on a side that does not have it.
 pub fn sides(
     derivation: &Derivation,
     subject: &Subject,

@@ -28,7 +28,7 @@ impl Identifiers {
         self.unused(name, hides || !is_identifier(name))
     }
 
-    /// What the function of a balance ends in, in lower case.
+    /// The ending of the name of a balance's function, in lower case.
     pub fn balance(&mut self, name: &str) -> String {
         let lower = name.to_lowercase();
         let is_refused = !is_identifier(&lower);

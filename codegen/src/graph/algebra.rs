@@ -1,4 +1,4 @@
-//! Constructors: each returns the canonical node of what it is asked for.
+//! Constructors of expressions. Each returns the canonical node, so that equal expressions are one node.
 
 use super::{FieldId, Function, Graph, Id, Jet, LawAtom, Node, Operator, ParameterId, Rational};
 use num_traits::{One, Signed, ToPrimitive, Zero};
@@ -362,7 +362,7 @@ impl Graph {
         self.intern(Node::Call(function, argument))
     }
 
-    /// One branch a choice; a choice between equals is no choice.
+    /// One branch for each choice of a switch. Equal branches give the branch itself.
     pub fn select(&mut self, switch: ParameterId, branches: Vec<Id>) -> Id {
         match branches.first() {
             Some(&first) if branches.iter().all(|&b| b == first) => first,

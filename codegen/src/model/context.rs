@@ -1,4 +1,4 @@
-//! Where an expression stands, and so which names it may use.
+//! The names that an expression may use, by its place in the spec.
 
 use crate::diagnostic::{Diagnostic, Location};
 

@@ -10,7 +10,7 @@ use crate::syntax::tree::{Expression, Name};
 /// the differential operators.
 const RESERVED: [&str; 8] = ["t", "k", "pi", "sqrt", "select", "integral", "at", "auto"];
 
-/// A name that stands for two things.
+/// The mistake of a name that is declared twice.
 pub(super) fn twice(name: &Name) -> Diagnostic {
     let message = format!("`{}` is defined twice", name.text);
     Diagnostic::new(name.location.clone(), message, "a name not used yet")
@@ -34,7 +34,7 @@ pub(super) fn beginning() -> Location {
 }
 
 impl Names<'_> {
-    /// A name that the language keeps for itself is none for a user to give.
+    /// Refuses a name that the language reserves.
     pub(super) fn check_name(&self, name: &Name) -> Resolved<()> {
         let word = name.text.as_str();
         let what = match word {

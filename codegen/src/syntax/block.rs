@@ -1,4 +1,4 @@
-//! The blocks of a spec that say what holds where: base, boundary, mean, amplitude, outputs, typical.
+//! The blocks base, boundary, mean, amplitude, outputs and typical of a spec.
 
 use super::item::unknown_item;
 use super::tree::*;

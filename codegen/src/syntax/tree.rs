@@ -228,7 +228,7 @@ pub enum ConditionItem {
     Select(Name, Vec<(Name, Vec<ConditionItem>)>),
 }
 
-/// What closes the problem at k = 0.
+/// An item of the block `mean`, which closes the problem at k = 0.
 #[derive(Clone, Debug)]
 pub enum MeanItem {
     /// `conserved integral(q);`
