@@ -25,6 +25,7 @@ mod latex;
 mod layout;
 mod leading;
 mod limits;
+mod messages;
 mod mistakes;
 mod nesting;
 mod onsets;

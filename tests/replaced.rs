@@ -104,3 +104,85 @@ fn an_unreadable_kept_task_is_computed_again() {
     assert_eq!(answer.status, 2, "{}", answer.err);
     assert!(answer.err.contains("notes.txt is none"), "{}", answer.err);
 }
+
+/// What a killed run left half written, in any folder of a report, is gone after the next run.
+#[test]
+fn files_that_killed_runs_left_are_removed() {
+    let desk = Desk::new();
+    assert_eq!(desk.reproduce(&study(SWEEP)).status, 0);
+    let left = ["report", "report/sources", "report.kept"];
+    let left = left.map(|folder| desk.path(folder).join(".landau-Eq9NGl"));
+    for forced in [false, true] {
+        for path in &left {
+            fs::write(path, "half").expect("written");
+        }
+        let paths = ["study.toml", "report"].map(|name| desk.path(name).display().to_string());
+        let mut line = vec!["reproduce", &paths[0], "--out", &paths[1]];
+        if forced {
+            line.push("--force");
+        }
+        let answer = landau(&line);
+        assert_eq!(answer.status, 0, "{}", answer.err);
+        for path in &left {
+            assert!(!path.exists(), "{}", path.display());
+        }
+        assert!(desk.path("report/.landau-report").is_file());
+    }
+    // The folder of a table, of a share, of what they make, of a picture.
+    let left = desk.path(".landau-Eq9NGl");
+    let path = |name: &str| desk.path(name).display().to_string();
+    let (table, share, merged, picture) =
+        (path("t.csv"), path("share"), path("m.csv"), path("a.svg"));
+    let sweep = ["sweep", "swift_hohenberg", "--over", "k=1:1.1:2", "--out"];
+    for line in [
+        [&sweep[..], &[&table]].concat(),
+        [&sweep[..], &[&share, "--shard", "1/1"]].concat(),
+        vec!["merge", &share, "--out", &merged],
+        vec!["spectrum", "rayleigh_benard", "--plot", &picture],
+    ] {
+        fs::write(&left, "half").expect("written");
+        let answer = landau(&line);
+        assert_eq!(answer.status, 0, "{line:?}: {}", answer.err);
+        assert!(!left.exists(), "{line:?}");
+    }
+}
+
+/// A file of somebody else in the place of a kept task is named and stays, whether there is a report or not.
+#[test]
+fn notes_in_the_place_of_a_kept_task_stay() {
+    let desk = Desk::new();
+    assert_eq!(desk.reproduce(&study(SWEEP)).status, 0);
+    let kept = desk.path("report.kept/1-1.json");
+    for text in ["my notes", "{}"] {
+        fs::write(&kept, text).expect("written");
+        let answer = desk.again(&desk.path("report"));
+        assert_eq!(answer.status, 2, "{}", answer.err);
+        let words = format!(
+            "error: {} exists and is not replaced: it is no finished task of a report. Remove it, choose another name, or \
+             give --force\n",
+            kept.display()
+        );
+        assert_eq!(answer.err, words);
+        assert_eq!(desk.read("report.kept/1-1.json"), text);
+    }
+}
+
+/// A study in the place where its report would write is refused, even with `--force`.
+#[test]
+fn a_report_does_not_replace_what_it_is_made_from() {
+    let desk = Desk::new();
+    let reference = "reference = [{ file = \"report/figure1-1.csv\", label = \"others\" }]\n";
+    let text = study(&SWEEP.replace(
+        "[[figure.task.case]]",
+        &format!("{reference}[[figure.task.case]]"),
+    ));
+    assert_eq!(desk.reproduce(&study(SWEEP)).status, 0);
+    fs::write(desk.path("report/figure1-1.csv"), "k,a0\n0.9,0.1\n").expect("written");
+    fs::write(desk.path("study.toml"), text).expect("written");
+    let paths = ["study.toml", "report"].map(|name| desk.path(name).display().to_string());
+    let answer = landau(&["reproduce", &paths[0], "--out", &paths[1], "--force"]);
+    assert_eq!(answer.status, 2, "{}", answer.err);
+    let words = "report/figure1-1.csv is what the report is made from, and the report would replace it: choose another --out";
+    assert!(answer.err.contains(words), "{}", answer.err);
+    assert_eq!(desk.read("report/figure1-1.csv"), "k,a0\n0.9,0.1\n");
+}

@@ -98,12 +98,17 @@ fn a_kept_task_that_was_changed_is_computed_again() {
         good.replace(&digits, "7.25"),
         good.replace("\"files\":[]", "\"files\":[\"../../../../etc/passwd\"]"),
         good.replace("\"seal\":\"", "\"seal\":\"0"),
-        "{}".to_owned(),
         String::new(),
     ] {
         assert_ne!(changed, good);
         fs::write(&kept, &changed).expect("written");
-        assert_eq!(desk.again(&desk.path("report")).status, 0);
+        let answer = desk.again(&desk.path("report"));
+        assert_eq!(answer.status, 0);
+        let note = format!(
+            "note: {} is damaged; its task is computed again, and the file is replaced",
+            kept.display()
+        );
+        assert!(answer.err.contains(&note), "{}", answer.err);
         assert_eq!(desk.read("report/figure1-1.csv"), table);
         assert!(!desk.read("report/index.html").contains("passwd"));
         assert_eq!(fs::read_to_string(&kept).expect("kept"), good);

@@ -3,6 +3,7 @@
 use crate::measured::Measured;
 use crate::model::C64;
 use serde_json::{Value, json};
+use std::path::Path;
 
 /// A finite number, or null.
 pub fn number(value: f64) -> Value {
@@ -18,13 +19,42 @@ pub fn complex(value: C64) -> Value {
     Value::Array(vec![number(value.re), number(value.im)])
 }
 
-/// A number in a title: six decimals at most, without trailing zeros. Below 10⁻⁴ all digits, with an exponent.
+/// A number in a title: six decimals at most, without trailing zeros. Below 10⁻⁴ and above 10¹⁵ all digits, with an exponent.
 pub fn short(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-4 {
+    if value != 0.0 && !(1e-4..=1e15).contains(&value.abs()) {
         return format!("{value:e}");
     }
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// A number as a message quotes it: with all its digits, but by a power of ten where it is very large or very small.
+pub fn brief(value: f64) -> String {
+    let size = value.abs();
+    if value.is_finite() && value != 0.0 && !(1e-5..=1e15).contains(&size) {
+        format!("{value:e}")
+    } else {
+        value.to_string()
+    }
+}
+
+/// A count with its noun: `1 row`, `2 rows`.
+pub fn counted(count: usize, noun: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{ending}")
+}
+
+/// The path of a file as a message has it: on one line, whatever characters are in its name.
+pub fn shown_path(path: &Path) -> String {
+    let mut shown = String::new();
+    for character in path.to_string_lossy().chars() {
+        if character.is_control() {
+            shown += &format!("\\u{:04x}", u32::from(character));
+        } else {
+            shown.push(character);
+        }
+    }
+    shown
 }
 
 /// A number whose real or imaginary part is set to zero where it is below a hundredth of the error.
@@ -96,12 +126,33 @@ pub fn undeclared(integral: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{short, with_error};
+    use super::{brief, counted, short, shown_path, with_error};
+    use std::path::Path;
+
+    #[test]
+    fn words_of_messages() {
+        let numbers = [1e300, -1e-300, 1e15, 1e-5, 0.0, 0.25, f64::INFINITY].map(brief);
+        let expected = [
+            "1e300",
+            "-1e-300",
+            "1000000000000000",
+            "0.00001",
+            "0",
+            "0.25",
+            "inf",
+        ];
+        assert_eq!(numbers, expected);
+        assert_eq!(
+            [0, 1, 2].map(|n| counted(n, "row")),
+            ["0 rows", "1 row", "2 rows"]
+        );
+        assert_eq!(shown_path(Path::new("a\nb κ.csv")), "a\\u000ab κ.csv");
+    }
 
     #[test]
     fn numbers_of_any_size() {
-        let texts = [0.16, 1708.0, -2.5e-9, 0.0, 1e-4].map(short);
-        assert_eq!(texts, ["0.16", "1708", "-2.5e-9", "0", "0.0001"]);
+        let texts = [0.16, 1708.0, -2.5e-9, 0.0, 1e-4, 1e300].map(short);
+        assert_eq!(texts, ["0.16", "1708", "-2.5e-9", "0", "0.0001", "1e300"]);
         assert_eq!(with_error(1e-17, 5e-16), "0 ± 6e-16");
         assert_eq!(with_error(1707.76178, 2e-5), "1707.76178 ± 2e-5");
     }

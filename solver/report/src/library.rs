@@ -7,8 +7,9 @@ use landau_codegen::{Sources, tape};
 use landau_solver::error::{Error, Result};
 use landau_solver::model::{Expression, Model, TapeModel, nearest};
 use landau_solver::study::derived::{Derived, Wanted};
+use landau_solver::words::shown_path;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// A spec as a model that interprets its kernels.
@@ -79,7 +80,7 @@ impl Library {
     /// A file that cannot be read.
     pub fn sources(&self, path: &Path) -> Result<Sources> {
         let mut sources = read_sources(path)
-            .map_err(|e| Error::input(format!("{} cannot be read: {e}", path.display())))?;
+            .map_err(|e| Error::input(format!("{} cannot be read: {e}", shown_path(path))))?;
         for (path, text) in self.models.iter().flat_map(|model| model.laws()) {
             let name = Path::new(&path).file_stem().unwrap_or_default();
             let name = name.to_string_lossy().into_owned();
@@ -87,6 +88,24 @@ impl Library {
             sources.laws.entry(name).or_insert(file);
         }
         Ok(sources)
+    }
+
+    /// The files that a model is read from: its spec and the laws beside it; none for a built model.
+    pub fn inputs(&self, name: &str) -> Vec<PathBuf> {
+        if self
+            .models
+            .iter()
+            .any(|model| model.structure().name == name)
+        {
+            return Vec::new();
+        }
+        let spec = PathBuf::from(name);
+        let folder = spec.parent().unwrap_or(Path::new("."));
+        let folders = [folder.join("laws"), folder.join("..").join("laws")];
+        let entries = folders.iter().flat_map(std::fs::read_dir).flatten();
+        let laws = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        let laws = laws.filter(|path| path.extension().is_some_and(|e| e == "law"));
+        laws.chain([spec.clone()]).collect()
     }
 
     /// A built model by name, or one run from the tape of its `.model` file.

@@ -1,8 +1,10 @@
 //! Files written whole or not at all, and never over what is somebody else's; files read with bounds.
 
+pub mod part;
 pub mod seal;
 
 use crate::error::{Error, Result};
+use crate::words::shown_path;
 use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -37,7 +39,7 @@ pub const TEXT_LIMIT: u64 = 16 << 20;
 /// # Errors
 /// A folder, a device, a folder that does not exist: before anything is computed.
 pub fn destination(path: &Path) -> Result<PathBuf> {
-    let refuse = |what: &str| Err(Error::input(format!("{}: {what}", path.display())));
+    let refuse = |what: &str| Err(Error::input(format!("{}: {what}", shown_path(path))));
     if path.file_name().is_none() {
         return refuse("this is no name of a file");
     }
@@ -56,7 +58,7 @@ pub fn destination(path: &Path) -> Result<PathBuf> {
     }
     let folder = folder_of(&target);
     if !folder.is_dir() {
-        return refuse(&format!("there is no folder {}", folder.display()));
+        return refuse(&format!("there is no folder {}", shown_path(folder)));
     }
     Ok(target)
 }
@@ -122,7 +124,7 @@ pub fn has_plain_file(path: &Path) -> Result<bool> {
             };
             Err(Error::input(format!(
                 "{} is {what}, where a file has to be written: remove it, or choose another name for the result",
-                path.display()
+                shown_path(path)
             )))
         }
     }
@@ -132,7 +134,7 @@ pub fn has_plain_file(path: &Path) -> Result<bool> {
 pub fn refused(path: &Path, reason: &str) -> Error {
     Error::input(format!(
         "{} exists and is not replaced: {reason}. Remove it, choose another name, or give --force",
-        path.display()
+        shown_path(path)
     ))
 }
 
@@ -141,16 +143,19 @@ pub fn is_sealed(path: &Path) -> bool {
     read_bounded(path, SEALED_LIMIT).is_ok_and(|bytes| seal::is_sealed(&bytes))
 }
 
+/// Removes what killed runs left half written in the folder of a file.
+pub fn remove_abandoned_beside(target: &Path) {
+    part::remove_abandoned(folder_of(target));
+}
+
 /// Makes a file in the folder and removes it again.
 fn check_folder(path: &Path, target: &Path) -> Result<()> {
-    let probe = tempfile::Builder::new()
-        .prefix(".landau-")
-        .tempfile_in(folder_of(target));
-    match probe {
+    remove_abandoned_beside(target);
+    match part::begin(folder_of(target), |_| ()) {
         Ok(_) => Ok(()),
         Err(error) => Err(Error::input(format!(
             "{} cannot be written: {error}",
-            path.display()
+            shown_path(path)
         ))),
     }
 }
@@ -160,9 +165,9 @@ fn check_folder(path: &Path, target: &Path) -> Result<()> {
 /// # Errors
 /// What is no plain file, is larger than `limit` bytes, or cannot be read.
 pub fn read_bounded(path: &Path, limit: u64) -> Result<Vec<u8>> {
-    let wrong = |what: &str| Error::input(format!("{} cannot be read: {what}", path.display()));
+    let wrong = |what: &str| Error::input(format!("{} cannot be read: {what}", shown_path(path)));
     let failure = |error: std::io::Error| wrong(&error.to_string());
-    // Look at the file before opening it: opening a pipe waits for a process at its far end.
+    // Looked at before it is opened, for to open a pipe is to wait for its other end.
     if !fs::metadata(path).map_err(failure)?.is_file() {
         return Err(wrong("it is no plain file"));
     }
@@ -186,7 +191,7 @@ pub fn read_text(path: &Path, limit: u64) -> Result<String> {
         let place = error.utf8_error().valid_up_to();
         Error::input(format!(
             "{} cannot be read: it is not UTF-8 text, from byte {} on",
-            path.display(),
+            shown_path(path),
             place + 1
         ))
     })
@@ -199,17 +204,17 @@ pub fn read_text(path: &Path, limit: u64) -> Result<String> {
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let target = destination(path)?;
     let failure =
-        |e: std::io::Error| Error::input(format!("{} cannot be written: {e}", path.display()));
-    // The temporary file is removed where something fails on the way.
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".landau-");
+        |e: std::io::Error| Error::input(format!("{} cannot be written: {e}", shown_path(path)));
+    // A temporary file of its own is removed where something fails on the way.
     let permissions = fs::metadata(&target).ok().map(|info| info.permissions());
-    #[cfg(unix)]
-    if permissions.is_none() {
-        // Those of any new file, rather than those of a temporary one; the process's umask is applied.
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    }
-    let mut part = builder.tempfile_in(folder_of(&target)).map_err(failure)?;
+    let begun = part::begin(folder_of(&target), |builder| {
+        #[cfg(unix)]
+        if permissions.is_none() {
+            // Those of any new file, rather than those of a temporary one; the process's umask is applied.
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        }
+    });
+    let mut part = begun.map_err(failure)?;
     part.write_all(bytes).map_err(failure)?;
     if let Some(permissions) = permissions {
         part.as_file()
@@ -269,22 +274,22 @@ mod tests {
         }
     }
 
-    /// Only sealed files are replaced, and a file that no command names is never replaced through a link.
+    /// Only what is sealed is replaced, and what has no name of its own in a command never through a link.
     #[test]
     fn what_may_be_replaced() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = |name: &str| folder.path().join(name);
-        let (ours, foreign, link) = (path("ours"), path("foreign"), path("link"));
-        write_whole(&ours, &sealed(format!("x {BLANK} y").into_bytes())).expect("written");
+        let (known, foreign, link) = (path("known"), path("foreign"), path("link"));
+        write_whole(&known, &sealed(format!("x {BLANK} y").into_bytes())).expect("written");
         write_whole(&foreign, b"x").expect("written");
-        symlink(&ours, &link).expect("a link");
+        symlink(&known, &link).expect("a link");
         let (recognised, anything) = (Overwrite::Recognised, Overwrite::Anything);
         assert!(check_replaceable(&path("new"), recognised).is_ok());
-        assert!(check_replaceable(&ours, recognised).is_ok());
+        assert!(check_replaceable(&known, recognised).is_ok());
         assert!(check_replaceable(&link, recognised).is_ok());
         assert!(check_replaceable(&foreign, recognised).is_err());
         assert!(check_replaceable(&foreign, anything).is_ok());
-        assert!(check_companion(&ours, recognised).is_ok());
+        assert!(check_companion(&known, recognised).is_ok());
         assert!(check_companion(&foreign, recognised).is_err());
         assert!(check_companion(&foreign, anything).is_ok());
         assert!(check_companion(&link, anything).is_err());

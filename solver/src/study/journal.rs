@@ -7,7 +7,9 @@
 use super::identity::SweepIdentity;
 use super::row::Row;
 use crate::error::{Error, Result};
+use crate::file::part::is_at;
 use crate::file::{Overwrite, has_plain_file, hash, refused};
+use crate::words::shown_path;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -65,7 +67,7 @@ impl Journal {
     ) -> Result<Self> {
         let path = journal_path(out);
         let failure =
-            |e: io::Error| Error::input(format!("{} cannot be written: {e}", path.display()));
+            |e: io::Error| Error::input(format!("{} cannot be written: {e}", shown_path(&path)));
         let mut file = locked(&path, out)?;
         let header = serde_json::to_string(&Header {
             landau_journal: VERSION,
@@ -139,7 +141,8 @@ impl Journal {
 /// Opens a journal and locks it. A run that ends removes its journal, so that the file locked may stand under the name no
 /// longer; then the name is opened again.
 fn locked(path: &Path, out: &Path) -> Result<File> {
-    let failure = |e: io::Error| Error::input(format!("{} cannot be written: {e}", path.display()));
+    let failure =
+        |e: io::Error| Error::input(format!("{} cannot be written: {e}", shown_path(path)));
     loop {
         has_plain_file(path)?;
         let mut options = OpenOptions::new();
@@ -150,7 +153,7 @@ fn locked(path: &Path, out: &Path) -> Result<File> {
             Err(TryLockError::WouldBlock) => {
                 return Err(Error::input(format!(
                     "{} is being written by another run; wait for it, or choose another --out",
-                    out.display()
+                    shown_path(out)
                 )));
             }
             Err(TryLockError::Error(error)) => return Err(failure(error)),
@@ -159,22 +162,6 @@ fn locked(path: &Path, out: &Path) -> Result<File> {
             return Ok(file);
         }
     }
-}
-
-/// Whether an open file stands under a name, not through a link.
-#[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    let place = |info: fs::Metadata| (info.dev(), info.ino());
-    match (file.metadata(), fs::symlink_metadata(path)) {
-        (Ok(open), Ok(named)) => place(open) == place(named),
-        _ => false,
-    }
-}
-
-#[cfg(not(unix))]
-fn is_at(_: &File, path: &Path) -> bool {
-    path.is_file()
 }
 
 /// What the first line of a journal says.

@@ -6,7 +6,10 @@ use super::identity::SweepIdentity;
 use super::row::{Row, Table, table};
 use super::sweep::{Resumed, Sweep};
 use crate::error::{Error, Result};
-use crate::file::{Overwrite, destination, hash, read_text, refused, write_whole};
+use crate::file::{
+    Overwrite, destination, hash, read_text, refused, remove_abandoned_beside, write_whole,
+};
+use crate::words::shown_path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -113,7 +116,7 @@ impl Shard {
     }
 
     fn read(path: &Path) -> Result<Self> {
-        let bad = |why: String| Error::input(format!("{}: {why}", path.display()));
+        let bad = |why: String| Error::input(format!("{}: {why}", shown_path(&path)));
         let text = read_text(path, SHARE_LIMIT)?;
         // Read by itself, for another format has other keys.
         let format = serde_json::from_str::<Format>(&text).map(|f| f.landau_shard);
@@ -154,6 +157,7 @@ impl Sweep<'_> {
         resumed: impl FnOnce(Resumed),
     ) -> Result<()> {
         let target = destination(out)?;
+        remove_abandoned_beside(&target);
         let sweep = self.identity();
         if target.exists() {
             if is_done(&target, &sweep, share) {
@@ -198,16 +202,16 @@ pub fn merge(paths: &[PathBuf]) -> Result<Table> {
         if let Some(difference) = difference(&first, &shard) {
             return Err(Error::input(format!(
                 "{} and {} are shares of different sweeps: {difference}",
-                first_path.display(),
-                path.display(),
+                shown_path(&first_path),
+                shown_path(&path),
             )));
         }
         for (chunk, rows_of_chunk) in shard.rows {
             if let Some((_, first_holder)) = rows.get(&chunk) {
                 return Err(Error::input(format!(
                     "{} and {} overlap: both hold part {} of {}",
-                    first_holder.display(),
-                    path.display(),
+                    shown_path(&first_holder),
+                    shown_path(&path),
                     chunk + 1,
                     first.chunks
                 )));

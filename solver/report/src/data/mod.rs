@@ -12,6 +12,7 @@ mod vtk;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::seal::sealed;
 use landau_solver::file::write_whole;
+use landau_solver::words::shown_path;
 use std::path::Path;
 
 /// What is said of a dataset or of an array.
@@ -83,13 +84,13 @@ impl Dataset {
             _ => {
                 return Err(Error::input(format!(
                     "{}: data is written as .{}",
-                    path.display(),
+                    shown_path(path),
                     FORMATS.join(", .")
                 )));
             }
         };
         let bytes = bytes.map_err(|reason| {
-            Error::computation(format!("{} cannot be encoded: {reason}", path.display()))
+            Error::computation(format!("{} cannot be encoded: {reason}", shown_path(path)))
         })?;
         write_whole(path, &sealed(bytes))
     }

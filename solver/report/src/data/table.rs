@@ -6,7 +6,8 @@
 use super::csvw;
 use landau_solver::error::Result;
 use landau_solver::file::{
-    Overwrite, check_companion, destination, hash, read_bounded, refused, write_whole,
+    Overwrite, check_companion, destination, hash, read_bounded, refused, remove_abandoned_beside,
+    write_whole,
 };
 use landau_solver::study::Progress;
 use landau_solver::study::identity::SweepIdentity;
@@ -34,6 +35,7 @@ pub fn check(out: &Path, sweep: &SweepIdentity, overwrite: Overwrite) -> Result<
     {
         return Err(refused(out, &reason));
     }
+    remove_abandoned_beside(&target);
     Ok(target)
 }
 

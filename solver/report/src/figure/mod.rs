@@ -18,6 +18,7 @@ pub use plane::{Plane, planes};
 use landau_solver::error::{Error, Result};
 use landau_solver::file::seal::{BLANK, sealed};
 use landau_solver::file::write_whole;
+use landau_solver::words::shown_path;
 use std::path::Path;
 
 /// Colours that remain apart for colour-blind readers (Okabe & Ito), the darkest first.
@@ -99,7 +100,7 @@ pub fn is_picture(path: &Path) -> bool {
 fn not_a_picture(path: &Path) -> Error {
     Error::input(format!(
         "{}: a picture is an .svg or a .png",
-        path.display()
+        shown_path(path)
     ))
 }
 

@@ -3,13 +3,12 @@
 use super::ledger::{self, MARK};
 use super::study::Study;
 use landau_solver::error::{Error, Result};
+use landau_solver::file::part::{is_part, remove_abandoned};
 use landau_solver::file::{Overwrite, TEXT_LIMIT, hash, read_text, write_whole};
+use landau_solver::words::shown_path;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-
-/// How files begin that are on their way into a folder, the mark among them.
-const ON_THE_WAY: &str = ".landau-";
 
 /// A folder that belongs to a report: nothing of others is in it.
 #[derive(Clone, Debug)]
@@ -26,7 +25,7 @@ impl Shelf {
     /// A folder with anything else in it, a path that is no folder, one without a name of its own; in the folder of a
     /// report a file that would be replaced and is not the report's, unless `overwrite` allows it.
     pub fn new(folder: &Path, overwrite: Overwrite) -> Result<Self> {
-        let wrong = |what: &str| Err(Error::input(format!("{}: {what}", folder.display())));
+        let wrong = |what: &str| Err(Error::input(format!("{}: {what}", shown_path(folder))));
         if folder.file_name().is_none() {
             return wrong("a report accepts a folder of its own, by its name");
         }
@@ -35,7 +34,7 @@ impl Shelf {
         }
         if let Ok(entries) = fs::read_dir(folder) {
             let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-            let foreign = paths.any(|path| !is_on_the_way(&path));
+            let foreign = paths.any(|path| !is_part(&path) && !path.ends_with(MARK));
             if foreign && !folder.join(MARK).is_file() {
                 return wrong(
                     "this folder holds other files and no report: a report accepts a new or empty folder, or that of an \
@@ -62,7 +61,7 @@ impl Shelf {
         let wrong = |what: &str| {
             Err(Error::input(format!(
                 "{}: finished tasks are kept here, and {what}: a report accepts another --out, or this folder without it",
-                folder.display()
+                shown_path(&folder)
             )))
         };
         if fs::symlink_metadata(&folder).is_ok() && !folder.is_dir() {
@@ -71,10 +70,9 @@ impl Shelf {
         if !self.folder.join(MARK).is_file() {
             let entries = fs::read_dir(&folder).into_iter().flatten();
             let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-            let is_foreign =
-                |path: &PathBuf| !is_on_the_way(path) && !is_kept(path).unwrap_or(true);
+            let is_foreign = |path: &PathBuf| !is_part(path) && !is_kept(path).unwrap_or(true);
             if let Some(path) = paths.find(is_foreign) {
-                return wrong(&format!("{} is none", path.display()));
+                return wrong(&format!("{} is none", shown_path(&path)));
             }
         }
         Ok(Shelf {
@@ -88,8 +86,15 @@ impl Shelf {
     /// # Errors
     /// Permissions, a full disk.
     pub fn make(&self) -> Result<()> {
-        fs::create_dir_all(&self.folder)
-            .map_err(|e| Error::input(format!("{} cannot be made: {e}", self.folder.display())))
+        fs::create_dir_all(&self.folder).map_err(|e| {
+            Error::input(format!("{} cannot be made: {e}", shown_path(&self.folder)))
+        })?;
+        if self.has_ledger {
+            ledger::clean(&self.folder);
+        } else {
+            remove_abandoned(&self.folder);
+        }
+        Ok(())
     }
 
     /// Makes the folder, and marks it.
@@ -129,7 +134,7 @@ impl Shelf {
         if fs::symlink_metadata(&path).is_ok_and(|info| !info.is_file()) {
             return Err(Error::input(format!(
                 "{}: this is no plain file: a report replaces nothing else",
-                path.display()
+                shown_path(&path)
             )));
         }
         Ok(path)
@@ -143,19 +148,13 @@ impl Shelf {
         let path = self.path(name)?;
         if let Some(folder) = path.parent().filter(|folder| !folder.is_dir()) {
             fs::create_dir_all(folder)
-                .map_err(|e| Error::input(format!("{} cannot be made: {e}", folder.display())))?;
+                .map_err(|e| Error::input(format!("{} cannot be made: {e}", shown_path(folder))))?;
         }
         if self.has_ledger {
             ledger::add(&self.folder, name, bytes)?;
         }
         write_whole(&path, bytes)
     }
-}
-
-/// Whether a file is on its way into a folder.
-fn is_on_the_way(path: &Path) -> bool {
-    let name = path.file_name().unwrap_or_default();
-    name.to_string_lossy().starts_with(ON_THE_WAY)
 }
 
 /// Whether a name is one of a file: no way to another folder, nothing that cannot be seen.

@@ -5,6 +5,8 @@ use super::outcome::Outcome;
 use super::study::Task;
 use super::workshop::Workshop;
 use landau_solver::error::{Error, Result};
+use landau_solver::file::{Overwrite, refused};
+use landau_solver::words::shown_path;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::{self, ErrorKind, Read};
@@ -25,23 +27,65 @@ struct Kept {
     outcome: Outcome,
 }
 
+/// What an earlier run has left of a task.
+pub(super) enum Earlier {
+    /// The task is finished, and nothing that it was made from has changed.
+    Fits(Box<Outcome>),
+    /// There is nothing, or it was made from something else.
+    Outdated,
+    /// The file was changed or cut: in words.
+    Damaged(String),
+    /// The file cannot be read, and stays as it is: in words.
+    Unreadable(String),
+}
+
+/// The file of a kept task.
+fn file_of(stem: &str) -> String {
+    format!("{stem}.json")
+}
+
 impl Workshop<'_> {
-    /// The file of a kept task that is there and cannot be read, and why: it stays as it is.
-    pub(super) fn unreadable(&self, stem: &str) -> Option<String> {
-        let path = self.kept.path(&format!("{stem}.json")).ok()?;
-        match fs::File::open(&path) {
-            Err(error) if error.kind() != ErrorKind::NotFound => {
-                Some(format!("{} cannot be read: {error}", path.display()))
+    /// Refuses a folder in which a file of somebody else has the name of a task to be kept.
+    ///
+    /// # Errors
+    /// Such a file, unless `overwrite` allows it to be replaced; a link or a folder in its place.
+    pub(super) fn check_kept(&self, overwrite: Overwrite) -> Result<()> {
+        for unit in self.tasks() {
+            let path = self.kept.path(&file_of(&unit.stem()))?;
+            let is_foreign = path.exists() && !is_kept(&path).unwrap_or(true);
+            if is_foreign && overwrite == Overwrite::Recognised {
+                return Err(refused(&path, "it is no finished task of a report"));
             }
-            _ => None,
+        }
+        Ok(())
+    }
+
+    /// What stands in the place of a kept task.
+    pub(super) fn earlier(&self, stem: &str, made_from: &str) -> Earlier {
+        let Ok(path) = self.kept.path(&file_of(stem)) else {
+            return Earlier::Outdated;
+        };
+        let text = match fs::read(&path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Earlier::Outdated,
+            Err(error) => {
+                return Earlier::Unreadable(format!(
+                    "{} cannot be read: {error}",
+                    shown_path(&path)
+                ));
+            }
+            Ok(bytes) => String::from_utf8(bytes).unwrap_or_default(),
+        };
+        let Some(content) = unsealed(&text) else {
+            return Earlier::Damaged(format!("{} is damaged", shown_path(&path)));
+        };
+        match serde_json::from_str::<Kept>(content) {
+            Ok(kept) if self.fits(&kept, made_from) => Earlier::Fits(Box::new(kept.outcome)),
+            _ => Earlier::Outdated,
         }
     }
 
-    /// A finished task, where it is kept as it was left and was made from the same.
-    pub(super) fn kept_task(&self, stem: &str, made_from: &str) -> Option<Outcome> {
-        let path = self.kept.path(&format!("{stem}.json")).ok()?;
-        let text = fs::read_to_string(path).ok()?;
-        let kept: Kept = serde_json::from_str(unsealed(&text)?).ok()?;
+    /// Whether a task was made from the same, and its files in the report are as it left them.
+    fn fits(&self, kept: &Kept, made_from: &str) -> bool {
         let unchanged = |(name, hash): &(String, String)| {
             let path = self.shelf.path(name).ok();
             let content = path.and_then(|path| fs::read(path).ok());
@@ -51,8 +95,7 @@ impl Workshop<'_> {
             .outcome
             .files()
             .eq(kept.files.iter().map(|(name, _)| name));
-        let whole = kept.made_from == made_from && named && kept.files.iter().all(unchanged);
-        whole.then_some(kept.outcome)
+        kept.made_from == made_from && named && kept.files.iter().all(unchanged)
     }
 
     /// Keeps a finished task.
@@ -64,7 +107,7 @@ impl Workshop<'_> {
         for name in outcome.files() {
             let path = self.shelf.path(name)?;
             let content = fs::read(&path)
-                .map_err(|e| Error::input(format!("{} cannot be read: {e}", path.display())))?;
+                .map_err(|e| Error::input(format!("{} cannot be read: {e}", shown_path(&path))))?;
             files.push((name.clone(), hash_of(&content)));
         }
         let kept = Kept {
@@ -74,8 +117,7 @@ impl Workshop<'_> {
         };
         let content =
             serde_json::to_string(&kept).map_err(|e| Error::computation(e.to_string()))?;
-        let name = format!("{stem}.json");
-        self.kept.write(&name, sealed(&content).as_bytes())
+        self.kept.write(&file_of(stem), sealed(&content).as_bytes())
     }
 
     /// Everything that a task is made from: its own text, the models and references, how names are written, the program.
@@ -99,15 +141,19 @@ impl Workshop<'_> {
     }
 }
 
-/// Whether a file is a kept task, whole or not.
+/// Whether a file is a kept task, whole or not. An empty file is one that a full disk or a power cut has left.
 ///
 /// # Errors
 /// A file with the name of a kept task that cannot be opened.
 pub(super) fn is_kept(path: &Path) -> io::Result<bool> {
     let is_json = path.extension().is_some_and(|e| e == "json");
     // Looked at before it is opened, for to open a pipe is to wait for its other end.
-    if !is_json || !fs::symlink_metadata(path)?.is_file() {
+    let info = fs::symlink_metadata(path)?;
+    if !is_json || !info.is_file() {
         return Ok(false);
+    }
+    if info.len() == 0 {
+        return Ok(true);
     }
     let mut start = [0; SEAL.len()];
     let read = fs::File::open(path)?.read_exact(&mut start);

@@ -5,15 +5,17 @@
 
 use super::files::hash_of;
 use landau_solver::error::{Error, Result};
+use landau_solver::file::part::{is_part, remove_abandoned};
 use landau_solver::file::seal::is_sealed;
 use landau_solver::file::{Overwrite, read_bounded, refused, write_whole};
+use landau_solver::words::shown_path;
 use std::collections::BTreeMap;
 use std::fs::{self, OpenOptions};
 use std::io::Write;
 use std::path::Path;
 
 /// The file by which a folder is known as one of a report.
-pub const MARK: &str = ".landau-report";
+pub const MARK: &str = landau_solver::file::part::REPORT_MARK;
 const MARK_TEXT: &str =
     "landau reproduce writes its report here, and replaces files of an earlier one.\n";
 
@@ -72,7 +74,7 @@ pub fn add(folder: &Path, name: &str, bytes: &[u8]) -> Result<()> {
     let opened = OpenOptions::new().append(true).open(&mark);
     opened
         .and_then(|mut file| file.write_all(line.as_bytes()))
-        .map_err(|e| Error::input(format!("{} cannot be written: {e}", mark.display())))
+        .map_err(|e| Error::input(format!("{} cannot be written: {e}", shown_path(&mark))))
 }
 
 /// Keeps the latest line of every file: nothing is on its way any more.
@@ -101,7 +103,8 @@ pub fn check(folder: &Path, overwrite: Overwrite) -> Result<()> {
     for name in names(folder) {
         let path = folder.join(&name);
         let is_file = fs::symlink_metadata(&path).is_ok_and(|info| info.is_file());
-        if !is_file || !is_of_a_report(&name) {
+        // A file on its way is nobody's: the run that writes it goes on, or was killed.
+        if !is_file || !is_of_a_report(&name) || is_part(&path) {
             continue;
         }
         if !ledger.wrote(&name, &read_bounded(&path, LIMIT)?) {
@@ -114,9 +117,22 @@ pub fn check(folder: &Path, overwrite: Overwrite) -> Result<()> {
     Ok(())
 }
 
+/// Removes what killed runs left half written in a folder of a report and below.
+pub fn clean(folder: &Path) {
+    contents(folder)
+        .1
+        .iter()
+        .for_each(|below| remove_abandoned(&folder.join(below)));
+}
+
 /// Names in a folder of a report, and in its folder of sources one and two levels below, in order.
 fn names(folder: &Path) -> Vec<String> {
-    let mut names = Vec::new();
+    contents(folder).0
+}
+
+/// Names of the files in a folder of a report and in its folders of sources, in order, and those of these folders.
+fn contents(folder: &Path) -> (Vec<String>, Vec<String>) {
+    let (mut names, mut searched) = (Vec::new(), Vec::new());
     let mut folders = vec![String::new()];
     while let Some(below) = folders.pop() {
         for entry in fs::read_dir(folder.join(&below)).into_iter().flatten() {
@@ -129,13 +145,14 @@ fn names(folder: &Path) -> Vec<String> {
                 names.push(name);
             }
         }
+        searched.push(below);
     }
     names.sort();
-    names
+    (names, searched)
 }
 
 /// Whether a report may give a file this name.
-fn is_of_a_report(name: &str) -> bool {
+pub fn is_of_a_report(name: &str) -> bool {
     let extension = Path::new(name).extension().and_then(|e| e.to_str());
     let is_drawn = name.starts_with(DRAWN) && extension.is_some_and(|e| EXTENSIONS.contains(&e));
     FIXED.contains(&name) || is_drawn || name.starts_with(SOURCES)

@@ -1,6 +1,6 @@
 //! What a task may ask of the model of a case, each with its place in the study where the model does not have it.
 
-use super::study::{Asked, Axis, Drawn, Spot, Statement, Together, pointed_at};
+use super::study::{Asked, Axis, Drawn, Spot, Statement, Together};
 use super::workshop::Workshop;
 use crate::library::{column, expression};
 use landau_solver::error::{Error, Result};
@@ -19,8 +19,9 @@ pub(super) fn refused(shop: &Workshop, spot: &Spot, error: Error) -> Error {
     let Error::Input(message) = error else {
         return error;
     };
-    let place = pointed_at(&shop.study.read_from.text, &spot.mistake(message));
-    Error::input(format!("{}: {place}", shop.study.read_from.path.display()))
+    let source = &shop.study.read_from;
+    let fault = spot.mistake(message).fault(&source.text);
+    Error::input(fault.pointed(&source.path, &source.text))
 }
 
 /// What a task needs of the model of one case.

@@ -1,5 +1,6 @@
 //! All tasks of a study, or one share of them, and the report.
 
+use super::keep::Earlier;
 use super::outcome::Outcome;
 use super::page::{self, Formulas};
 use super::study::{Figure, Task};
@@ -12,11 +13,18 @@ use std::time::Instant;
 
 /// A task and where it belongs.
 #[derive(Clone, Copy)]
-struct Unit<'a> {
+pub(super) struct Unit<'a> {
     section: usize,
     figure: &'a Figure,
     index: usize,
     task: &'a Task,
+}
+
+impl Unit<'_> {
+    /// How the names of its files end.
+    pub(super) fn stem(&self) -> String {
+        format!("{}-{}", self.figure.id, self.index + 1)
+    }
 }
 
 impl Workshop<'_> {
@@ -58,7 +66,7 @@ impl Workshop<'_> {
     }
 
     /// Every task of the study, in order.
-    fn tasks(&self) -> Vec<Unit<'_>> {
+    pub(super) fn tasks(&self) -> Vec<Unit<'_>> {
         let sections = self.study.figure.iter().enumerate();
         let tasks = sections.flat_map(|(section, figure)| {
             let tasks = figure.task.iter().enumerate();
@@ -106,21 +114,28 @@ impl Workshop<'_> {
     /// One task, from an earlier run where that has finished it.
     fn task(&self, unit: &Unit, progress: &dyn Progress) -> Result<Outcome> {
         let figure = &unit.figure.id;
-        let stem = format!("{figure}-{}", unit.index + 1);
+        let stem = unit.stem();
         let made_from = self.made_from(&stem, unit.task)?;
-        if let Some(outcome) = self.kept_task(&stem, &made_from) {
-            return Ok(outcome);
+        let earlier = self.earlier(&stem, &made_from);
+        if let Earlier::Fits(outcome) = earlier {
+            return Ok(*outcome);
         }
         let place = Place {
             figure,
             stem: &stem,
         };
         let outcome = task::run(self, &place, unit.task)?;
-        if let Some(reason) = self.unreadable(&stem) {
-            progress.done(&format!(
-                "note: {reason}; its task is computed again, and the file stays as it is"
-            ));
-            return Ok(outcome);
+        match earlier {
+            Earlier::Unreadable(reason) => {
+                progress.done(&format!(
+                    "note: {reason}; its task is computed again, and the file stays as it is"
+                ));
+                return Ok(outcome);
+            }
+            Earlier::Damaged(reason) => progress.done(&format!(
+                "note: {reason}; its task is computed again, and the file is replaced"
+            )),
+            Earlier::Fits(_) | Earlier::Outdated => {}
         }
         self.keep(&stem, &made_from, &outcome)?;
         Ok(outcome)

@@ -3,13 +3,15 @@
 use super::feasible;
 use super::files::Shelf;
 use super::keep::is_kept;
+use super::ledger::is_of_a_report;
 use super::study::{Case, Study};
 use super::symbols;
 use crate::library::Library;
-use landau_solver::error::Result;
+use landau_solver::error::{Error, Result};
 use landau_solver::file::Overwrite;
 use landau_solver::model::Model;
 use landau_solver::study::Setup;
+use landau_solver::words::shown_path;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -62,12 +64,45 @@ impl<'a> Workshop<'a> {
             setups: Mutex::default(),
         };
         feasible::check(&shop)?;
+        shop.check_inputs()?;
+        shop.check_kept(overwrite)?;
         Ok(shop)
     }
 
     /// The folder in which finished tasks are kept.
     pub fn kept(&self) -> &Path {
         self.kept.folder()
+    }
+
+    /// Refuses a report whose files would replace what it is made from, whatever may be replaced otherwise.
+    fn check_inputs(&self) -> Result<()> {
+        let study = self.study;
+        let beside = |name: &String| study.home().join(name);
+        let mut inputs = vec![study.read_from.path.clone()];
+        inputs.extend(study.errata.iter().map(beside));
+        let tasks = || study.figure.iter().flat_map(|figure| &figure.task);
+        let references = tasks().flat_map(|task| task.kind().references());
+        inputs.extend(references.map(|reference| beside(&reference.file)));
+        let cases = tasks().flat_map(|task| task.kind().cases());
+        let models = cases.filter_map(|case| case.model.as_ref());
+        for name in [&study.model].into_iter().chain(models) {
+            inputs.extend(self.library.inputs(&self.place_of_model(name)));
+        }
+        let folder = self.shelf.folder().canonicalize();
+        let Ok(folder) = folder else { return Ok(()) };
+        for input in inputs {
+            let place = input.canonicalize().ok();
+            let name = place
+                .as_ref()
+                .and_then(|place| place.strip_prefix(&folder).ok());
+            if name.is_some_and(|name| is_of_a_report(&name.to_string_lossy())) {
+                return Err(Error::input(format!(
+                    "{} is what the report is made from, and the report would replace it: choose another --out",
+                    shown_path(&input)
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// The model of the whole study.
@@ -97,17 +132,22 @@ impl<'a> Workshop<'a> {
         Ok(self.defaults(name)?.model)
     }
 
+    /// The name by which the library has a model of the study: the path of a file beside the study where there is one.
+    fn place_of_model(&self, name: &str) -> String {
+        let file = self.study.home().join(name);
+        match file.to_str() {
+            Some(path) if file.is_file() => path.to_owned(),
+            _ => name.to_owned(),
+        }
+    }
+
     /// A model at the defaults of its parameters; setups made from it share the base states that were solved.
     fn defaults(&self, name: &str) -> Result<Setup> {
         let mut setups = self.setups.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(setup) = setups.get(name) {
             return Ok(setup.clone());
         }
-        let file = self.study.home().join(name);
-        let model = match file.to_str() {
-            Some(path) if file.is_file() => self.library.model(path)?,
-            _ => self.library.model(name)?,
-        };
+        let model = self.library.model(&self.place_of_model(name))?;
         let setup = Setup::new(model, self.study.resolution)?;
         setups.insert(name.to_owned(), setup.clone());
         Ok(setup)

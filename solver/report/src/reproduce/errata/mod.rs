@@ -8,7 +8,7 @@ mod verdict;
 
 pub use verdict::{RULE, Verdict};
 
-use super::study::{refined, words_can_be_shown};
+use super::study::{Fault, fault_of, words_can_be_shown};
 use landau_codegen::derive::Derivation;
 use landau_codegen::diagnostic::SourceFile;
 use landau_codegen::emit::comparison;
@@ -185,9 +185,9 @@ impl Errata {
     /// A file that is missing, or says what such a file does not (with line and column).
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path, TEXT_LIMIT)?;
-        let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
+        let wrong = |fault: Fault| Error::input(fault.pointed(path, &text));
         words_can_be_shown(&text).map_err(wrong)?;
-        toml::from_str(&text).map_err(|e| wrong(refined(&text, &e)))
+        toml::from_str(&text).map_err(|e| wrong(fault_of(&text, &e)))
     }
 
     /// Compares every formula with the derivation.

@@ -3,7 +3,7 @@
 use super::check::{Checked, Spot};
 use super::task::{Asked, Mark, PanelOf, Reference, Tail, Together};
 use super::{Axis, Case, Statement};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 
 /// What a study says of a task of any kind, before any model is asked.
@@ -23,7 +23,7 @@ pub(in crate::reproduce) trait Kind {
 }
 
 /// What is computed for a figure.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Task {
     Profiles(Profiles),
@@ -66,6 +66,48 @@ macro_rules! of_any_kind {
 pub(in crate::reproduce) use of_any_kind;
 
 impl Task {
+    /// The words by which a file asks for tasks.
+    pub(super) const KINDS: [&str; 14] = [
+        "profiles",
+        "law",
+        "convergence",
+        "spectrum",
+        "sweep",
+        "resonance",
+        "orders",
+        "second_harmonic",
+        "critical",
+        "claims",
+        "values",
+        "power_law",
+        "pattern",
+        "circulation",
+    ];
+
+    /// The task of a kind, without the key `kind`; nothing where there is no such kind.
+    pub(super) fn read<'d, D: Deserializer<'d>>(
+        kind: &str,
+        keys: D,
+    ) -> Option<Result<Self, D::Error>> {
+        Some(match kind {
+            "profiles" => Profiles::deserialize(keys).map(Task::Profiles),
+            "law" => Law::deserialize(keys).map(Task::Law),
+            "convergence" => Convergence::deserialize(keys).map(Task::Convergence),
+            "spectrum" => Spectrum::deserialize(keys).map(Task::Spectrum),
+            "sweep" => Sweep::deserialize(keys).map(Task::Sweep),
+            "resonance" => Resonance::deserialize(keys).map(Task::Resonance),
+            "orders" => Orders::deserialize(keys).map(Task::Orders),
+            "second_harmonic" => SecondHarmonic::deserialize(keys).map(Task::SecondHarmonic),
+            "critical" => Critical::deserialize(keys).map(Task::Critical),
+            "claims" => Claims::deserialize(keys).map(Task::Claims),
+            "values" => Values::deserialize(keys).map(Task::Values),
+            "power_law" => PowerLaw::deserialize(keys).map(Task::PowerLaw),
+            "pattern" => Pattern::deserialize(keys).map(Task::Pattern),
+            "circulation" => Circulation::deserialize(keys).map(Task::Circulation),
+            _ => return None,
+        })
+    }
+
     /// What the study says of it.
     pub(in crate::reproduce) fn kind(&self) -> &dyn Kind {
         of_any_kind!(self, kind => kind)

@@ -5,6 +5,7 @@ mod check;
 pub(in crate::reproduce) mod kinds;
 mod place;
 mod printed;
+mod read;
 mod statement;
 mod task;
 mod words;
@@ -16,7 +17,7 @@ pub use statement::{Quantity, Statement, Threshold, Trend, percent};
 pub use task::{Asked, Drawn, Of, PanelOf, Reference, Tail, Together};
 
 pub(in crate::reproduce) use check::Spot;
-pub(in crate::reproduce) use place::{pointed_at, refined};
+pub(in crate::reproduce) use place::{Fault, fault_of};
 pub(in crate::reproduce) use words::check as words_can_be_shown;
 
 use landau_solver::error::{Error, Result};
@@ -88,6 +89,7 @@ pub struct Figure {
     /// What the source says, and where we differ.
     #[serde(default)]
     pub text: String,
+    #[serde(skip_deserializing)]
     pub task: Vec<Task>,
 }
 
@@ -140,11 +142,10 @@ impl Study {
     /// A file that is missing, or says what a study file does not (with line and column).
     pub fn read(path: &Path) -> Result<Self> {
         let text = read_text(path, TEXT_LIMIT)?;
-        let wrong = |what: String| Error::input(format!("{}: {what}", path.display()));
+        let wrong = |fault: Fault| Error::input(fault.pointed(path, &text));
         words::check(&text).map_err(wrong)?;
-        let mut study: Study =
-            toml::from_str(&text).map_err(|e| wrong(place::refined(&text, &e)))?;
-        check::check(&study).map_err(|mistake| wrong(place::pointed_at(&text, &mistake)))?;
+        let mut study = read::study(&text).map_err(wrong)?;
+        check::check(&study).map_err(|mistake| wrong(mistake.fault(&text)))?;
         let tasks = study.figure.iter_mut().flat_map(|figure| &mut figure.task);
         tasks.for_each(Task::label_apart);
         study.read_from = Source {

@@ -1,6 +1,9 @@
 //! Where in the file a mistake is: at the key itself, not at the table that holds it.
 
+use super::read::accepted;
+use landau_solver::words::{counted, shown_path};
 use std::ops::Range;
+use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 /// Characters of a line that are shown, around the mistake.
@@ -23,11 +26,31 @@ pub(in crate::reproduce) struct Mistake {
     pub message: String,
 }
 
-/// A mistake with its line: at the deepest of its steps that the file has.
-pub(in crate::reproduce) fn pointed_at(text: &str, mistake: &Mistake) -> String {
-    match located(text, &mistake.steps) {
-        Some(range) => pointed(text, range, &mistake.message),
-        None => bounded(&mistake.message),
+impl Mistake {
+    /// The mistake at the deepest of its steps that the file has.
+    pub fn fault(&self, text: &str) -> Fault {
+        Fault {
+            range: located(text, &self.steps),
+            message: self.message.clone(),
+        }
+    }
+}
+
+/// A mistake at a part of a text.
+#[derive(Debug)]
+pub(in crate::reproduce) struct Fault {
+    pub range: Option<Range<usize>>,
+    pub message: String,
+}
+
+impl Fault {
+    /// In words: the file with line and column, the line, the message.
+    pub fn pointed(self, file: &Path, text: &str) -> String {
+        let file = shown_path(file);
+        match self.range {
+            Some(range) => format!("{file}:{}", pointed(text, range, &self.message)),
+            None => format!("{file}: {}", bounded(&self.message)),
+        }
     }
 }
 
@@ -55,8 +78,8 @@ fn located(text: &str, steps: &[Step]) -> Option<Range<usize>> {
     Some(range)
 }
 
-/// A message with the line that it is about, both of bounded length.
-pub(super) fn pointed(text: &str, range: Range<usize>, message: &str) -> String {
+/// Line, column and a message with the line that it is about, both of bounded length.
+fn pointed(text: &str, range: Range<usize>, message: &str) -> String {
     let before = &text[..range.start];
     let line = before.matches('\n').count() + 1;
     let start = before.rfind('\n').map_or(0, |at| at + 1);
@@ -85,18 +108,18 @@ pub(super) fn pointed(text: &str, range: Range<usize>, message: &str) -> String 
     let number = line.to_string();
     let bar = " ".repeat(number.len());
     format!(
-        "line {line}, column {}\n{bar} |\n{number} | {lead}{window}{tail}\n{bar} | {gap}{marks}\n{}\n",
+        "{line}:{}\n{bar} |\n{number} | {lead}{window}{tail}\n{bar} | {gap}{marks}\n{}\n",
         column + 1,
         bounded(message)
     )
 }
 
 /// A message of any length, with lines of bounded length and a bounded number of them.
-pub(super) fn bounded(message: &str) -> String {
+fn bounded(message: &str) -> String {
     let lines: Vec<&str> = message.lines().collect();
     let mut short: Vec<String> = lines.iter().take(LINES).map(|line| cut(line)).collect();
     if lines.len() > LINES {
-        short.push(format!("… ({} more lines)", lines.len() - LINES));
+        short.push(format!("… ({} more)", counted(lines.len() - LINES, "line")));
     }
     short.join("\n")
 }
@@ -112,11 +135,11 @@ fn cut(line: &str) -> String {
     format!("{start} … {end}")
 }
 
-/// A mistake that the reader of TOML finds, at its own key where it only knows the table.
-pub(in crate::reproduce) fn refined(text: &str, error: &toml::de::Error) -> String {
+/// A mistake that the reader of TOML finds, at its own key where it only knows the table, with the name of the key.
+pub(in crate::reproduce) fn fault_of(text: &str, error: &toml::de::Error) -> Fault {
     let header = error
         .span()
-        .filter(|span| text[span.clone()].starts_with('['));
+        .filter(|span| text[span.clone()].starts_with("[["));
     // The reader knows the first table of a list, or the one itself.
     let key = header.and_then(|span| {
         let within = |end: usize| {
@@ -127,15 +150,76 @@ pub(in crate::reproduce) fn refined(text: &str, error: &toml::de::Error) -> Stri
         let (table, list) = table_ends(text, span.start);
         within(table).or_else(|| within(list))
     });
-    // The reader names types of numbers as the program does.
-    let message = error
-        .message()
-        .replace("expected usize", "expected a whole number")
-        .replace("expected f64", "expected a number");
-    match key.or_else(|| error.span()) {
-        Some(range) => pointed(text, range, &message),
-        None => bounded(&message),
+    let range = key.or_else(|| error.span());
+    let message = in_words(error.message());
+    let message = match &range {
+        Some(range) => with_key(text, range, &message),
+        None => message,
+    };
+    Fault { range, message }
+}
+
+/// What the reader of TOML says, in the words of a study: it names types as the program does.
+fn in_words(message: &str) -> String {
+    let untagged = [
+        (
+            "untagged enum Together",
+            "no column: `columns` accepts columns in brackets; those of one panel in brackets of their own",
+        ),
+        ("untagged enum Drawn", "no column: it accepts a text"),
+        (
+            "untagged enum Written",
+            "no printed number: it accepts a number, or a text with its digits such as \"0.1790\"",
+        ),
+    ];
+    if let Some((_, words)) = untagged.iter().find(|(name, _)| message.contains(name)) {
+        return (*words).to_owned();
     }
+    message
+        .replace("expected usize", "expected a whole number")
+        .replace("expected f64", "expected a number")
+}
+
+/// A message with the name of the key that it is about, and what this key accepts.
+fn with_key(text: &str, range: &Range<usize>, message: &str) -> String {
+    if message == "duplicate key" {
+        let key = text[range.clone()].trim();
+        return format!("the key `{key}` stands twice in one table");
+    }
+    if let Some(key) = message.strip_prefix("missing field `") {
+        let key = key.trim_end_matches('`');
+        let accepted = accepted(key).map_or(String::new(), |words| format!(": it accepts {words}"));
+        return format!("`{key}` is missing{accepted}");
+    }
+    let Ok(top) = DeTable::parse(text) else {
+        return message.to_owned();
+    };
+    match key_of(top.get_ref(), range) {
+        Some(key) if !message.contains(&format!("`{key}`")) => {
+            let accepted = accepted(&key).filter(|_| message.starts_with("invalid"));
+            let accepted = accepted.filter(|words| !message.contains(*words));
+            let accepted = accepted.map_or(String::new(), |words| format!("; it accepts {words}"));
+            format!("`{key}`: {message}{accepted}")
+        }
+        _ => message.to_owned(),
+    }
+}
+
+/// The key whose value stands there, or holds what stands there.
+fn key_of(table: &DeTable, range: &Range<usize>) -> Option<String> {
+    fn within(value: &toml::Spanned<DeValue>, range: &Range<usize>) -> Option<Option<String>> {
+        let here = value.span() == *range;
+        match value.get_ref() {
+            _ if here => Some(None),
+            DeValue::Array(list) => list.iter().find_map(|value| within(value, range)),
+            DeValue::Table(table) => key_of(table, range).map(Some),
+            _ => None,
+        }
+    }
+    table.iter().find_map(|(key, value)| {
+        let deeper = within(value, range)?;
+        Some(deeper.unwrap_or_else(|| key.get_ref().to_string()))
+    })
 }
 
 /// The end of a table with its own tables, where the next of its kind begins, and of the list, where one above does.
@@ -191,14 +275,15 @@ fn place_of_key(text: &str, table: Range<usize>, key: &str) -> Option<Range<usiz
 
 #[cfg(test)]
 mod tests {
-    use super::{Mistake, Step, place_of_key, pointed, pointed_at};
+    use super::{Mistake, Step, place_of_key, pointed};
+    use std::path::Path;
 
     #[test]
     fn mistakes_are_pointed_at() {
         let text = "a = 1\n[[b]]\ncount = 3\nover = { count = 0 }\n";
         let table = text.find("over").expect("there")..text.len();
         let place = place_of_key(text, table, "count").expect("a key");
-        let expected = "line 4, column 10\n  |\n4 | over = { count = 0 }\n  |          ^^^^^\nno\n";
+        let expected = "4:10\n  |\n4 | over = { count = 0 }\n  |          ^^^^^\nno\n";
         assert_eq!(pointed(text, place, "no"), expected);
         let key = |key: &str| Step::Key(key.to_owned());
         let mistake = |steps: &[Step]| Mistake {
@@ -206,11 +291,12 @@ mod tests {
             message: "no".to_owned(),
         };
         let steps = [key("b"), Step::At(0), key("over"), key("count")];
-        assert_eq!(pointed_at(text, &mistake(&steps)), expected);
+        let pointed_at = |steps: &[Step]| mistake(steps).fault(text).pointed(Path::new("f"), text);
+        assert_eq!(pointed_at(&steps), format!("f:{expected}"));
         // A key that is missing is pointed at where it would stand.
         let steps = [key("b"), Step::At(0), key("k")];
-        assert!(pointed_at(text, &mistake(&steps)).starts_with("line 2, "));
-        assert_eq!(pointed_at(text, &mistake(&[key("z")])), "no");
+        assert!(pointed_at(&steps).starts_with("f:2:"));
+        assert_eq!(pointed_at(&[key("z")]), "f: no");
     }
 
     /// A line of any length is shown in part, with the mistake in it.

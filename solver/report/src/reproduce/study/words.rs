@@ -1,6 +1,7 @@
 //! Texts of a study that no page, picture or table could show.
 
-use super::place::pointed;
+use super::place::Fault;
+use super::read::accepted;
 use crate::is_shown;
 use std::ops::Range;
 use toml::de::{DeTable, DeValue};
@@ -25,11 +26,11 @@ const LONGEST: usize = 1000;
 /// Keys whose texts start a cell of a table: a spreadsheet takes some for formulas.
 const CELLS: [&str; 2] = ["label", "name"];
 
-/// Refuses control characters, marks that turn the direction of a text, and labels that a spreadsheet computes.
+/// Refuses dates, control characters, marks that turn the direction of a text, and labels that a spreadsheet computes.
 ///
 /// # Errors
 /// Where, and what is accepted. What is no TOML at all is left to its reader.
-pub(in crate::reproduce) fn check(text: &str) -> Result<(), String> {
+pub(in crate::reproduce) fn check(text: &str) -> Result<(), Fault> {
     let Ok(table) = DeTable::parse(text) else {
         return Ok(());
     };
@@ -39,7 +40,10 @@ pub(in crate::reproduce) fn check(text: &str) -> Result<(), String> {
     wrong.sort_by_key(|(range, _)| range.start);
     match wrong.into_iter().next() {
         None => Ok(()),
-        Some((range, message)) => Err(pointed(text, range, &message)),
+        Some((range, message)) => Err(Fault {
+            range: Some(range),
+            message,
+        }),
     }
 }
 
@@ -65,6 +69,13 @@ fn below(key: &str, value: &DeValue, span: Range<usize>, wrong: &mut Vec<(Range<
             }
         }
         DeValue::Table(table) => walk(table, wrong),
+        DeValue::Datetime(date) => {
+            let accepted = accepted(key).unwrap_or("numbers, or texts in quotation marks");
+            wrong.push((
+                span,
+                format!("{key} = {date}: this is a date; `{key}` accepts {accepted}"),
+            ));
+        }
         _ => {}
     }
 }
@@ -120,10 +131,14 @@ mod tests {
             ("a = [{ label = \"x\\u0000\" }]", "U+0000"),
             ("title = \"two\\nlines\"", "U+000A"),
             ("label = \"=1+1\"", "spreadsheet"),
+            (
+                "between = [0.1, 2024-01-01]",
+                "between = 2024-01-01: this is a date; `between` accepts two numbers, the lower first",
+            ),
             ("[printed]\n\"a\\u001b\" = 1", "U+001B"),
             ("text = \"\"\"\npasses \\\\\nthrough\"\"\"", "backslash"),
         ] {
-            let message = check(text).expect_err(text);
+            let message = check(text).expect_err(text).message;
             assert!(message.contains(refused), "{message}");
         }
         for text in [
@@ -131,7 +146,7 @@ mod tests {
             "label = \"−1: S = 100, é, κ, Ra_c\"",
             "latex = '''a \\\\\nb'''",
         ] {
-            assert_eq!(check(text), Ok(()));
+            assert!(check(text).is_ok());
         }
     }
 }

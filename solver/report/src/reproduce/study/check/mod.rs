@@ -153,14 +153,16 @@ pub(super) fn check(study: &Study) -> Checked {
 
 /// An id begins the names of files and is the aim of links.
 fn id(spot: &Spot, id: &str) -> Checked {
-    let letters = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let begins = id.starts_with(|c: char| c.is_ascii_alphanumeric());
-    let ends = id.ends_with(|c: char| c.is_ascii_alphanumeric());
-    let so = begins && ends && id.len() <= ID && id.chars().all(letters) && !id.contains("..");
+    let letters = |c: char| c.is_ascii_alphanumeric() || c == '-';
+    let so = !id.is_empty()
+        && !id.starts_with('-')
+        && !id.ends_with('-')
+        && id.len() <= ID
+        && id.chars().all(letters);
     spot.demand(so, || {
         format!(
-            "id = {id:?}: it begins the names of files, and accepts up to {ID} letters (a to z), digits, hyphens, \
-             underscores and full stops, a letter or a digit at both ends"
+            "id = {id:?}: it begins the names of files, and accepts up to {ID} letters (a to z), digits and hyphens, a \
+             letter or a digit at both ends"
         )
     })
 }
