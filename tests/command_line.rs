@@ -72,7 +72,7 @@ fn bad_input_is_refused_in_a_sentence() {
         ("point vibrated_bed --k 0.16 --set S", 2, "NAME=VALUE"),
         ("point vibrated_bed --k -1", 2, "positive number"),
         ("point vibrated_bed --k 0", 2, "positive number"),
-        ("point vibrated_bed --k 0.1 -M 2", 2, "-M accepts"),
+        ("point vibrated_bed --k 0.1 -M 2", 2, "M accepts 4 to 1000"),
         ("point vibrated_bed --k 0.1 --order 4", 2, "--order"),
         ("point vibrated_bed --k 0.1 --near x", 2, "--near"),
         (

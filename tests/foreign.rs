@@ -410,3 +410,70 @@ fn names_that_are_not_utf8() {
     let (status, said) = run(&["reproduce", &study], &name(b"r\xffeport"));
     assert!(matches!(status, Some(0 | 2)), "{said}");
 }
+
+/// What a command reads is not replaced, under any name, whatever is allowed.
+#[test]
+fn inputs_are_not_replaced() {
+    let folder = Folder::new();
+    let text = fs::read(root().join("spec/models/swift_hohenberg.model")).expect("a spec");
+    fs::create_dir(folder.path("laws")).expect("made");
+    let law = "fn square(x) = x^2;\n";
+    let [table, picture] = ["my.csv-metadata.json", "my.svg"].map(|name| folder.path(name));
+    let link = folder.path("link.svg");
+    symlink(&picture, &link).expect("a link");
+    let rule = folder.path("laws/square.law");
+    fs::write(&rule, law).expect("written");
+    for model in [&table, &picture] {
+        fs::write(model, &text).expect("written");
+    }
+    let out = folder.path("my.csv");
+    let range = ["--over", "k=0.9:1.1:3"];
+    let onset = ["--vary", "r", "--from", "-0.1", "--to", "0.1", "--k", "1"];
+    for (line, file) in [
+        (
+            [&["sweep", &picture, "--out", &picture][..], &range].concat(),
+            &picture,
+        ),
+        (
+            [&["sweep", &picture, "--out", &link][..], &range].concat(),
+            &link,
+        ),
+        (
+            [&["sweep", &picture, "--out", &rule][..], &range].concat(),
+            &rule,
+        ),
+        (
+            [&["sweep", &table, "--out", &out][..], &range].concat(),
+            &table,
+        ),
+        (
+            [
+                &["sweep", &picture, "--out", &out, "--plot", &link][..],
+                &range,
+            ]
+            .concat(),
+            &link,
+        ),
+        (vec!["base", &picture, "--plot", &link], &link),
+        (
+            vec!["point", &picture, "--k", "1", "--plot", &picture],
+            &picture,
+        ),
+        (vec!["pattern", &picture, "--k", "1", "--out", &link], &link),
+        (
+            [&["critical", &picture, "--plot", &link][..], &onset].concat(),
+            &link,
+        ),
+    ] {
+        let line = [&line[..], &["--force"]].concat();
+        let answer = landau(&line);
+        assert_eq!(answer.status, 2, "{line:?}: {}", answer.err);
+        let words =
+            "is what the command reads, and is not replaced: choose another name for the result";
+        assert_eq!(answer.err, format!("error: {file} {words}\n"), "{line:?}");
+        for model in [&table, &picture] {
+            assert_eq!(fs::read(model).expect("there"), text, "{line:?}");
+        }
+        assert_eq!(fs::read_to_string(&rule).expect("there"), law);
+    }
+}

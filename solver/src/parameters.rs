@@ -60,8 +60,9 @@ impl Parameters {
         let info = &structure.parameters[parameter];
         let refuse = |trouble: &str| {
             Err(Error::input(format!(
-                "{} = {value} is {trouble}: `{}` accepts {}",
+                "{} = {} is {trouble}: `{}` accepts {}",
                 info.name,
+                words::brief(value),
                 info.name,
                 accepts(structure, parameter)
             )))

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::model::Jet;
+use crate::words::brief;
 use std::fmt;
 use std::ops::{Add, Mul, Neg};
 
@@ -32,7 +33,8 @@ impl WaveVector {
             return Ok(WaveVector { along_x: k });
         }
         Err(Error::input(format!(
-            "k = {k} is not a wavenumber: it has to be a positive number"
+            "k = {} is not a wavenumber: it has to be a positive number",
+            brief(k)
         )))
     }
 

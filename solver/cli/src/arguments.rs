@@ -1,8 +1,11 @@
 //! Commands and options.
 
+use crate::values::{beside, mode, near};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use landau_report::data::csvw::path_beside;
 use landau_solver::model::C64;
 use landau_solver::study::amplitudes::ModeChoice;
+use landau_solver::study::journal_path;
 use std::path::PathBuf;
 
 /// From balance equations to amplitude equations.
@@ -86,6 +89,8 @@ pub enum Command {
         #[command(flatten)]
         files: Files,
         #[command(flatten)]
+        mode: OfMode,
+        #[command(flatten)]
         common: Common,
     },
     /// Amplitude equations of several modes: coefficients, equilibria with their stability, certificate.
@@ -115,6 +120,8 @@ pub enum Command {
         #[command(flatten)]
         options: CriticalOptions,
         #[command(flatten)]
+        mode: OfMode,
+        #[command(flatten)]
         common: Common,
     },
     /// Landau points over ranges of k and parameters, as CSV; resumes where it was interrupted.
@@ -126,6 +133,8 @@ pub enum Command {
         model: String,
         #[command(flatten)]
         options: SweepOptions,
+        #[command(flatten)]
+        mode: OfMode,
         #[command(flatten)]
         common: Common,
     },
@@ -144,6 +153,8 @@ pub enum Command {
         model: String,
         #[command(flatten)]
         options: PatternOptions,
+        #[command(flatten)]
+        mode: OfMode,
         #[command(flatten)]
         common: Common,
     },
@@ -182,8 +193,48 @@ pub enum Command {
         #[arg(long, default_value_t = 3)]
         order: usize,
         #[command(flatten)]
+        mode: OfMode,
+        #[command(flatten)]
         common: Common,
     },
+}
+
+impl Command {
+    /// The model that is asked for, where a command that writes files takes one.
+    pub fn model(&self) -> Option<&str> {
+        match self {
+            Command::Base { model, .. }
+            | Command::Spectrum { model, .. }
+            | Command::Point { model, .. }
+            | Command::Critical { model, .. }
+            | Command::Sweep { model, .. }
+            | Command::Pattern { model, .. } => Some(model),
+            _ => None,
+        }
+    }
+
+    /// Every file that the command may write, but for the files in the folder of a report.
+    pub fn results(&self) -> Vec<PathBuf> {
+        match self {
+            Command::Base { files, .. }
+            | Command::Spectrum { files, .. }
+            | Command::Point { files, .. } => {
+                files.plot.iter().chain(&files.out).cloned().collect()
+            }
+            Command::Critical { options, .. } => options.plot.iter().cloned().collect(),
+            Command::Pattern { options, .. } => options.out.clone(),
+            Command::Merge { options } => vec![options.out.clone(), path_beside(&options.out)],
+            Command::Sweep { options, .. } => {
+                let out = &options.out;
+                let mut paths = vec![out.clone(), path_beside(out), journal_path(out)];
+                paths
+                    .extend([Engine::Hq, Engine::Slurm].map(|engine| beside(out, engine.ending())));
+                paths.extend(options.plot.iter().cloned());
+                paths
+            }
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// Options that every computation takes.
@@ -195,12 +246,17 @@ pub struct Common {
     /// Chebyshev resolution M.
     #[arg(short = 'M', default_value_t = 50)]
     pub resolution: usize,
-    /// Which mode: the one nearest to this eigenvalue; the leading one by default.
-    #[arg(long, value_name = "RE[:IM]", value_parser = near, allow_hyphen_values = true)]
-    pub near: Option<C64>,
     /// Print one JSON object alone on standard output.
     #[arg(long)]
     pub json: bool,
+}
+
+/// An option of every computation that is about one mode.
+#[derive(Args)]
+pub struct OfMode {
+    /// Which mode: the one nearest to this eigenvalue; the leading one by default.
+    #[arg(long, value_name = "RE[:IM]", value_parser = near, allow_hyphen_values = true)]
+    pub near: Option<C64>,
 }
 
 #[derive(Args)]
@@ -293,6 +349,16 @@ pub enum Engine {
     Slurm,
 }
 
+impl Engine {
+    /// How the name of the file ends that an engine is given.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Engine::Hq => ".hq.toml",
+            Engine::Slurm => ".slurm.sh",
+        }
+    }
+}
+
 #[derive(Args)]
 pub struct MergeOptions {
     /// The files of all shares.
@@ -360,102 +426,4 @@ pub enum Of {
     Growth,
     C2,
     Resonance,
-}
-
-/// An eigenvalue, `RE[:IM]`; a comma is accepted in the place of the colon.
-fn near(text: &str) -> Result<C64, String> {
-    let number = |part: &str| {
-        let value = part.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-        value.ok_or_else(|| format!("`{part}` is not a number; near accepts RE or RE:IM"))
-    };
-    match text.split_once([':', ',']) {
-        Some((re, im)) => Ok(C64::new(number(re)?, number(im)?)),
-        None => Ok(C64::new(number(text)?, 0.0)),
-    }
-}
-
-/// `k=K[,near=RE[:IM]]`
-fn mode(text: &str) -> Result<ModeChoice, String> {
-    let wrong =
-        |part: &str| format!("`{part}` is no part of a mode; --mode accepts k=K[,near=RE[:IM]]");
-    let twice =
-        |key: &str| format!("`{text}` names {key} twice; --mode accepts k=K[,near=RE[:IM]]");
-    let (mut k, mut target) = (None, None);
-    let mut parts = text.split(',').peekable();
-    while let Some(part) = parts.next() {
-        match part.trim().split_once('=') {
-            Some(("k", value)) => {
-                let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-                let value = value.ok_or_else(|| wrong(part))?;
-                if k.replace(value).is_some() {
-                    return Err(twice("k"));
-                }
-            }
-            Some(("near", re)) => {
-                // The comma of RE,IM separates parts of a mode too: a part without a name is IM.
-                let im = parts.next_if(|next| !next.contains('='));
-                let value = im.map_or(re.to_owned(), |im| format!("{re},{im}"));
-                if target.replace(near(&value)?).is_some() {
-                    return Err(twice("near"));
-                }
-            }
-            _ => return Err(wrong(part)),
-        }
-    }
-    let k =
-        k.ok_or_else(|| format!("`{text}` has no wavenumber; --mode accepts k=K[,near=RE[:IM]]"))?;
-    Ok(ModeChoice { k, near: target })
-}
-
-/// `NAME=A:B` or `NAME=A:B:N`
-pub fn range(option: &str, text: &str, parts: usize) -> Result<(String, Vec<f64>), String> {
-    let expected = if parts == 3 {
-        "NAME=FROM:TO:COUNT"
-    } else {
-        "k=A:B"
-    };
-    let wrong = || format!("{option} {text}: {option} accepts {expected}");
-    let (name, numbers) = text.split_once('=').ok_or_else(wrong)?;
-    let numbers: Vec<f64> = numbers
-        .split(':')
-        .map(|n| n.trim().parse::<f64>())
-        .collect::<Result<_, _>>()
-        .map_err(|_| wrong())?;
-    if numbers.len() != parts || numbers.iter().any(|n| !n.is_finite()) {
-        return Err(wrong());
-    }
-    Ok((name.trim().to_owned(), numbers))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{mode, near};
-    use landau_solver::model::C64;
-
-    /// Both spellings of an eigenvalue, in both places.
-    #[test]
-    fn an_eigenvalue_has_two_spellings() {
-        let expected = C64::new(-0.5, 2.0);
-        for text in ["-0.5:2", "-0.5,2", " -0.5 : 2 "] {
-            assert_eq!(near(text), Ok(expected), "{text}");
-            for order in [format!("k=3,near={text}"), format!("near={text},k=3")] {
-                let choice = mode(&order).expect("a mode");
-                assert_eq!((choice.k, choice.near), (3.0, Some(expected)), "{order}");
-            }
-        }
-        assert_eq!(near("0.1"), Ok(C64::new(0.1, 0.0)));
-        let refused = "`x` is not a number; near accepts RE or RE:IM";
-        for text in ["x", "1:x", "1,x"] {
-            assert_eq!(near(text), Err(refused.to_owned()), "{text}");
-        }
-        for (text, words) in [
-            ("k=1,k=2", "`k=1,k=2` names k twice"),
-            ("k=1,near=1,near=2", "names near twice"),
-            ("near=1", "has no wavenumber"),
-            ("k=1,2", "`2` is no part of a mode"),
-        ] {
-            let message = mode(text).map(|_| ()).expect_err(text);
-            assert!(message.contains(words), "{message}");
-        }
-    }
 }

@@ -11,6 +11,7 @@ use landau_solver::file::{Overwrite, destination};
 use landau_solver::study::journal_path;
 use landau_solver::study::shard::{self, Share};
 use landau_solver::study::sweep::Sweep;
+use landau_solver::words::{counted, shown_path};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -46,7 +47,7 @@ pub fn run_share(sweep: &Sweep, text: &str, options: &SweepOptions, common: &Com
     let bar = Bar::new("sweeping");
     sweep.run_share(share, &options.out, overwrite, &bar, resumed)?;
     interrupt::finished();
-    let out = options.out.display();
+    let out = shown_path(&options.out);
     if common.json {
         say!(
             "{}",
@@ -63,6 +64,10 @@ pub fn merge(options: &MergeOptions) -> Result<()> {
     outputs::check_apart(&options.out, options.shards.iter().map(PathBuf::as_path))?;
     let merged = shard::merge(&options.shards)?;
     table::write_merged(&options.out, &merged, Overwrite::forced(options.force))?;
-    say!("{} shares: {}", options.shards.len(), options.out.display());
+    say!(
+        "{}: {}",
+        counted(options.shards.len(), "share"),
+        shown_path(&options.out)
+    );
     Ok(())
 }

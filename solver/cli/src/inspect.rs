@@ -11,6 +11,7 @@ use landau_solver::error::{Error, Result};
 use landau_solver::model::{CaseInfo, ClosureKind, Jet, Model};
 use landau_solver::study::Setup;
 use landau_solver::words;
+use landau_solver::words::shown_path;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -52,7 +53,7 @@ pub fn check(library: &Library, file: &Path) -> Result<()> {
     let fields: Vec<&str> = structure.fields.iter().map(|f| f.name.as_str()).collect();
     say!(
         "{}: the model `{}` in {} is well formed",
-        file.display(),
+        shown_path(file),
         structure.name,
         fields.join(", ")
     );

@@ -1,6 +1,7 @@
 //! A run that keeps what it has finished says so when it is stopped from outside. Any other command leaves signals as they
 //! are, and ends at once.
 
+use landau_solver::words::shown_path;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 use std::path::{Path, PathBuf};
@@ -67,15 +68,18 @@ fn sentence() -> String {
     match kept {
         Some(Kept::Journal(path)) => match lines(&path) {
             Some(count) => format!(
-                "interrupted: {} finished parts are kept in {}; the same command goes on from there",
-                count.saturating_sub(1),
-                path.display()
+                "interrupted: {} kept in {}; the same command goes on from there",
+                match count.saturating_sub(1) {
+                    1 => "1 finished part is".to_owned(),
+                    parts => format!("{parts} finished parts are"),
+                },
+                shown_path(&path)
             ),
             None => "interrupted".to_owned(),
         },
         Some(Kept::Tasks(path)) => format!(
             "interrupted: finished tasks are kept in {}; the same command goes on from there",
-            path.display()
+            shown_path(&path)
         ),
         None => "interrupted".to_owned(),
     }

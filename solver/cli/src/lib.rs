@@ -19,6 +19,7 @@ mod progress;
 mod reproduce;
 mod script;
 mod solve;
+mod values;
 
 use arguments::{Arguments, Command, Common};
 use clap::Parser;
@@ -29,10 +30,11 @@ use landau_solver::model::Model;
 use landau_solver::study::Setup;
 use std::process::ExitCode;
 use std::sync::Arc;
+use values::joined_numbers;
 
 /// Runs the command line for the models of a crate.
 pub fn run(models: Vec<Arc<dyn Model>>) -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let arguments = match Arguments::try_parse_from(joined_numbers(std::env::args_os())) {
         Ok(arguments) => arguments,
         Err(error) => {
             // --help and --version are answers.
@@ -58,7 +60,23 @@ fn ended(outcome: Result<()>) -> ExitCode {
     }
 }
 
+/// Refuses results that would replace what a command reads.
+fn check_inputs(library: &Library, command: &Command) -> Result<()> {
+    let results = command.results();
+    match command {
+        Command::Merge { options } => {
+            // The table has a message for itself.
+            outputs::check_inputs(&results[1..], &options.shards)
+        }
+        _ => match command.model() {
+            Some(model) => outputs::check_inputs(&results, &library.inputs(model)),
+            None => Ok(()),
+        },
+    }
+}
+
 fn dispatch(library: &Library, command: Command) -> Result<()> {
+    check_inputs(library, &command)?;
     match command {
         Command::Models { json } => inspect::models(&library.models, json),
         Command::Check { file } => inspect::check(library, &file),
@@ -97,11 +115,12 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
             k,
             order,
             files,
+            mode,
             common,
         } => {
             let setup = &setup(library, &model, &common)?;
-            picture::modes(setup, k, &files, &common)?;
-            solve::point(setup, k, order, &common)
+            picture::modes(setup, k, &files, &mode)?;
+            solve::point(setup, k, order, &mode, &common)
         }
         Command::Amplitudes {
             model,
@@ -115,27 +134,30 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
         Command::Critical {
             model,
             options,
+            mode,
             common,
         } => {
             let setup = &setup(library, &model, &common)?;
-            solve::critical(setup, &options, &common)
+            solve::critical(setup, &options, &mode, &common)
         }
         Command::Sweep {
             model,
             options,
+            mode,
             common,
         } => {
             let setup = &setup(library, &model, &common)?;
-            solve::sweep(setup, &options, &common)
+            solve::sweep(setup, &options, &mode, &common)
         }
         Command::Merge { options } => cluster::merge(&options),
         Command::Pattern {
             model,
             options,
+            mode,
             common,
         } => {
             let setup = &setup(library, &model, &common)?;
-            pattern::pattern(setup, &options, &common)
+            pattern::pattern(setup, &options, &mode, &common)
         }
         Command::Reproduce {
             study,
@@ -158,10 +180,11 @@ fn dispatch(library: &Library, command: Command) -> Result<()> {
             model,
             k,
             order,
+            mode,
             common,
         } => {
             let setup = &setup(library, &model, &common)?;
-            solve::verify(setup, k, order, &common)
+            solve::verify(setup, k, order, &mode, &common)
         }
     }
 }

@@ -4,6 +4,7 @@ use landau_report::data::FORMATS;
 use landau_report::figure::is_picture;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::{Overwrite, check_replaceable, destination};
+use landau_solver::words::shown_path;
 use std::path::{Path, PathBuf};
 
 /// Refuses files that a command must not write: two under one name, and those that Landau did not write, unless
@@ -35,10 +36,32 @@ fn place(path: &Path) -> Result<PathBuf> {
     Ok(folder.map_or_else(|_| target.clone(), |folder| folder.join(name)))
 }
 
+/// Refuses files that would replace what the command reads, whatever the user allows.
+///
+/// # Errors
+/// One of `paths` is one of `inputs`, perhaps through a link.
+pub fn check_inputs(paths: &[PathBuf], inputs: &[PathBuf]) -> Result<()> {
+    let inputs: Vec<PathBuf> = inputs
+        .iter()
+        .filter_map(|i| i.canonicalize().ok())
+        .collect();
+    let is_input = |path: &&PathBuf| {
+        let place = path.canonicalize();
+        place.is_ok_and(|place| inputs.contains(&place))
+    };
+    match paths.iter().find(is_input) {
+        Some(path) => Err(Error::input(format!(
+            "{} is what the command reads, and is not replaced: choose another name for the result",
+            shown_path(path)
+        ))),
+        None => Ok(()),
+    }
+}
+
 fn named_twice(path: &Path) -> Error {
     Error::input(format!(
         "{} is named twice: one file would replace the other",
-        path.display()
+        shown_path(path)
     ))
 }
 
@@ -63,7 +86,7 @@ pub fn check_picture(path: Option<&Path>) -> Result<()> {
     match path {
         Some(path) if !is_picture(path) => Err(Error::input(format!(
             "--plot {}: it accepts .svg, .png",
-            path.display()
+            shown_path(path)
         ))),
         _ => Ok(()),
     }
@@ -81,7 +104,7 @@ pub fn check_data(paths: &[PathBuf], extensions: &[&str]) -> Result<()> {
     match paths.iter().find(|path| !has_format(path)) {
         Some(path) => Err(Error::input(format!(
             "--out {}: it accepts .{}",
-            path.display(),
+            shown_path(path),
             extensions.join(", .")
         ))),
         None => Ok(()),

@@ -1,6 +1,6 @@
 //! The command `pattern`: pictures and data of the fields over the plane.
 
-use crate::arguments::{Common, PatternOptions};
+use crate::arguments::{Common, OfMode, PatternOptions};
 use crate::asked::asked;
 use crate::outputs;
 use landau_report::data::plane::{attributes, dataset};
@@ -15,11 +15,17 @@ use landau_solver::study::accuracy::Converged;
 use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{Pattern, PlaneField, Window, pattern as expand};
 use landau_solver::words;
+use landau_solver::words::shown_path;
 use serde_json::json;
 use std::path::PathBuf;
 
-pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Result<()> {
-    let (k, selection) = asked(setup, options.k, common)?;
+pub fn pattern(
+    setup: &Setup,
+    options: &PatternOptions,
+    of_mode: &OfMode,
+    common: &Common,
+) -> Result<()> {
+    let (k, selection) = asked(setup, options.k, of_mode.near)?;
     WaveVector::wave(k)?;
     let window = window(options)?;
     outputs::check_data(&options.out, &outputs::plane_formats())?;
@@ -65,13 +71,13 @@ pub fn pattern(setup: &Setup, options: &PatternOptions, common: &Common) -> Resu
             json!({"k": k, "amplitude": amplitude.value, "error": {"amplitude": error}, "out": files})
         );
     } else {
-        let title = &setup.model.structure().title;
+        let (title, k) = (&setup.model.structure().title, words::brief(k));
         match options.amplitude {
-            Some(given) => say!("{title} at k = {k}, A = {given}"),
+            Some(given) => say!("{title} at k = {k}, A = {}", words::brief(given)),
             None => say!("{title} at k = {k}, A = {amplitude}"),
         }
         for path in &options.out {
-            say!("  {}", path.display());
+            say!("  {}", shown_path(path));
         }
     }
     Ok(())
@@ -96,7 +102,8 @@ fn window(options: &PatternOptions) -> Result<Window> {
     let wavelengths = options.wavelengths;
     if !(wavelengths > 0.0 && wavelengths <= 100.0) {
         return Err(Error::input(format!(
-            "--wavelengths {wavelengths}: it accepts a number up to 100"
+            "--wavelengths {}: it accepts a number above 0, up to 100",
+            words::brief(wavelengths)
         )));
     }
     Ok(Window {

@@ -1,6 +1,6 @@
 //! Pictures of answers, and what is stored beside them; the table of a sweep.
 
-use crate::arguments::{Common, Files};
+use crate::arguments::{Files, OfMode};
 use crate::asked::asked;
 use crate::outputs;
 use landau_report::data::plane::{attributes, modes as dataset};
@@ -13,6 +13,8 @@ use landau_solver::study::Setup;
 use landau_solver::study::modes::Modes;
 use landau_solver::study::row::{Column, Row, column};
 use landau_solver::study::sweep::Sweep;
+use landau_solver::words;
+use landau_solver::words::shown_path;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -25,7 +27,7 @@ pub fn drawn(path: Option<&Path>, draw: impl FnOnce() -> Option<Drawing>) -> Res
     let drawn = draw().ok_or_else(|| {
         Error::input(format!(
             "--plot {}: there is no profile to draw, for the model has no cross-stream coordinate",
-            path.display()
+            shown_path(path)
         ))
     })?;
     drawn.write(path)
@@ -61,12 +63,12 @@ pub fn stored(
 ///
 /// # Errors
 /// As [`drawn`] and [`check`].
-pub fn modes(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -> Result<()> {
+pub fn modes(setup: &Setup, k: Option<f64>, files: &Files, of_mode: &OfMode) -> Result<()> {
     check(files)?;
     if files.plot.is_none() && files.out.is_empty() {
         return Ok(());
     }
-    let (k, selection) = asked(setup, k, common)?;
+    let (k, selection) = asked(setup, k, of_mode.near)?;
     let profiles = Modes::compute(setup, k, selection)?;
     let structure = setup.model.structure();
     drawn(files.plot.as_deref(), || {
@@ -87,7 +89,10 @@ pub fn table(sweep: &Sweep, rows: &[Row]) {
     say!("{}", names.chain(columns).collect::<String>());
     let stride = rows.len().div_ceil(SHOWN).max(1);
     for row in rows.iter().step_by(stride) {
-        let place = row.coordinates.iter().map(|x| format!("{x:>12.6}"));
+        let place = row
+            .coordinates
+            .iter()
+            .map(|x| format!("{:>12}", words::short(*x)));
         let number = |v: Option<f64>| v.map_or(format!("{:>16}", "-"), |v| format!("{v:>16.6e}"));
         let values = [row.c0.map(|c| c[0]), row.c2.map(|c| c[0]), row.amplitude].map(number);
         say!("{}", place.chain(values).collect::<String>());

@@ -9,6 +9,7 @@ use landau_report::reproduce::{Errata, Outcome, Provenance, Study, Verdict, Work
 use landau_solver::error::{Error, Result};
 use landau_solver::file::Overwrite;
 use landau_solver::study::shard::Share;
+use landau_solver::words::{counted, shown_path};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -57,13 +58,14 @@ pub fn reproduce(
 /// Computes one share of the tasks.
 fn run_share(shop: &Workshop, share: Share, json: bool) -> Result<()> {
     let count = shop.run_share(share, &Bar::new("reproducing"))?;
-    let (Share { index, count: of }, kept) = (share, shop.kept().display());
+    let (Share { index, count: of }, kept) = (share, shown_path(shop.kept()));
     if json {
         let object = json!({"share": [index, of], "tasks": count, "kept": kept.to_string()});
         say!("{object}");
     } else {
         say!(
-            "share {index} of {of}: {count} tasks kept in {kept}; when all shares are there, the same command without --shard writes the report"
+            "share {index} of {of}: {} kept in {kept}; when all shares are there, the same command without --shard writes the report",
+            counted(count, "task")
         );
     }
     Ok(())
@@ -117,11 +119,11 @@ fn print(page: &Path, study: &Study, outcome: &Outcome) {
         );
     }
     say!(
-        "{} figures, {} numbers, {} statements: {}",
-        study.figure.len(),
-        outcome.numbers.len(),
-        outcome.claims.len(),
-        page.display()
+        "{}, {}, {}: {}",
+        counted(study.figure.len(), "figure"),
+        counted(outcome.numbers.len(), "number"),
+        counted(outcome.claims.len(), "statement"),
+        shown_path(page)
     );
 }
 

@@ -1,6 +1,7 @@
 //! Scripts that run a sweep in shares: for Slurm a shell script, for HyperQueue a job file.
 
 use crate::arguments::{Common, Engine, SweepOptions};
+use crate::values::beside;
 use landau_report::data::table;
 use landau_solver::error::{Error, Result};
 use landau_solver::file::seal::{BLANK, sealed};
@@ -11,7 +12,7 @@ use serde::Serialize;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Writes the script or job file that runs the sweep in `--tasks` shares and merges them, and says how to start it.
 ///
@@ -32,11 +33,11 @@ pub fn emit(engine: Engine, sweep: &Sweep, options: &SweepOptions, common: &Comm
     let overwrite = Overwrite::forced(options.force);
     table::check(&options.out, &sweep.identity(), overwrite)?;
     let job = Job::new(options)?;
-    let (extension, text) = match engine {
-        Engine::Slurm => ("slurm.sh", job.slurm()),
-        Engine::Hq => ("hq.toml", job.hyperqueue()?.into_bytes()),
+    let text = match engine {
+        Engine::Slurm => job.slurm(),
+        Engine::Hq => job.hyperqueue()?.into_bytes(),
     };
-    let path = PathBuf::from(joined(options.out.as_os_str(), &format!(".{extension}")));
+    let path = beside(&options.out, engine.ending());
     check_companion(&path, overwrite)?;
     write_whole(&path, &sealed(text))?;
     let program = match engine {
@@ -88,7 +89,7 @@ impl<'a> Job<'a> {
 
     /// The file of a share beside the whole.
     fn shard(&self, index: usize) -> OsString {
-        joined(self.out.as_os_str(), &format!(".shard-{index}"))
+        beside(self.out, &format!(".shard-{index}")).into_os_string()
     }
 
     /// A script that, started by hand, submits itself as a job array, and once more as the merge, which waits for the
@@ -231,13 +232,6 @@ fn words_of_sweep(words: impl Iterator<Item = OsString>) -> Vec<OsString> {
         }
     }
     kept
-}
-
-/// A name with something after it.
-fn joined(name: &OsStr, end: &str) -> OsString {
-    let mut name = name.to_owned();
-    name.push(end);
-    name
 }
 
 fn utf8(words: &[OsString]) -> Result<Vec<String>> {

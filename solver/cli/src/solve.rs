@@ -1,9 +1,10 @@
 //! Commands that compute.
 
-use crate::arguments::{Common, CriticalOptions, Files, Of, SweepOptions, range};
+use crate::arguments::{Common, CriticalOptions, Files, Of, OfMode, SweepOptions};
 use crate::asked::{asked, resumed};
 use crate::interrupt::{self, Kept};
 use crate::progress::Bar;
+use crate::values::range;
 use crate::{cluster, outputs, picture, script};
 use landau_report::data::{lines, table};
 use landau_report::figure;
@@ -44,7 +45,7 @@ pub fn base(setup: &Setup, points: usize, files: &Files, common: &Common) -> Res
 
 pub fn spectrum(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -> Result<()> {
     picture::check(files)?;
-    let (k, _) = asked(setup, k, common)?;
+    let (k, _) = asked(setup, k, None)?;
     let report = SpectrumReport::compute(setup, k)?;
     picture::drawn(files.plot.as_deref(), || figure::spectrum(&report))?;
     picture::stored(setup, &report.parameters, Some(k), &files.out, |facts| {
@@ -58,8 +59,14 @@ pub fn spectrum(setup: &Setup, k: Option<f64>, files: &Files, common: &Common) -
     Ok(())
 }
 
-pub fn point(setup: &Setup, k: Option<f64>, order: usize, common: &Common) -> Result<()> {
-    let (k, selection) = asked(setup, k, common)?;
+pub fn point(
+    setup: &Setup,
+    k: Option<f64>,
+    order: usize,
+    of_mode: &OfMode,
+    common: &Common,
+) -> Result<()> {
+    let (k, selection) = asked(setup, k, of_mode.near)?;
     let report = PointReport::compute(setup, k, selection, order)?;
     if common.json {
         say!("{}", report.json());
@@ -84,7 +91,12 @@ pub fn amplitudes(
     Ok(())
 }
 
-pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Result<()> {
+pub fn critical(
+    setup: &Setup,
+    options: &CriticalOptions,
+    of_mode: &OfMode,
+    common: &Common,
+) -> Result<()> {
     let overwrite = Overwrite::forced(options.force);
     outputs::check_picture(options.plot.as_deref())?;
     outputs::check(options.plot.as_deref(), overwrite)?;
@@ -104,7 +116,7 @@ pub fn critical(setup: &Setup, options: &CriticalOptions, common: &Common) -> Re
         },
         k: options.k,
         minimize: options.minimize.as_ref().map(range_of_k).transpose()?,
-        tracking: match (common.near, options.follow) {
+        tracking: match (of_mode.near, options.follow) {
             (Some(target), _) => Tracking::Near(target),
             (None, true) => Tracking::Fastest,
             (None, false) => Tracking::Leading,
@@ -178,7 +190,12 @@ fn over(setup: &Setup, text: &str) -> Result<Range> {
     Ok(Range { name, axis, values })
 }
 
-pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<()> {
+pub fn sweep(
+    setup: &Setup,
+    options: &SweepOptions,
+    of_mode: &OfMode,
+    common: &Common,
+) -> Result<()> {
     let ranges = options
         .over
         .iter()
@@ -189,7 +206,7 @@ pub fn sweep(setup: &Setup, options: &SweepOptions, common: &Common) -> Result<(
         .iter()
         .map(|text| column(setup.model.as_ref(), text))
         .collect::<Result<_>>()?;
-    let mode = match common.near {
+    let mode = match of_mode.near {
         near if options.follow => RowMode::Followed(near),
         Some(target) => RowMode::Nearest(target),
         None => RowMode::Leading,
@@ -237,9 +254,9 @@ fn summary(sweep: &Sweep, rows: &[Row], options: &SweepOptions, common: &Common)
     } else {
         picture::table(sweep, rows);
         say!(
-            "{} rows, {numbered} with a number, {good} ok, {unstable} unstable: {}",
-            rows.len(),
-            options.out.display()
+            "{}, {numbered} with a number, {good} ok, {unstable} unstable: {}",
+            words::counted(rows.len(), "row"),
+            words::shown_path(&options.out)
         );
     }
     if numbered == 0 {
@@ -251,8 +268,14 @@ fn summary(sweep: &Sweep, rows: &[Row], options: &SweepOptions, common: &Common)
     Ok(())
 }
 
-pub fn verify(setup: &Setup, k: Option<f64>, order: usize, common: &Common) -> Result<()> {
-    let (k, selection) = asked(setup, k, common)?;
+pub fn verify(
+    setup: &Setup,
+    k: Option<f64>,
+    order: usize,
+    of_mode: &OfMode,
+    common: &Common,
+) -> Result<()> {
+    let (k, selection) = asked(setup, k, of_mode.near)?;
     let certificate = Certificate::compute(setup, k, selection, order)?;
     if common.json {
         say!("{}", certificate.json());

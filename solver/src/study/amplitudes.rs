@@ -1,10 +1,12 @@
 //! Amplitude equations of any modes, with everything that they rest on: what `amplitudes` prints.
 
+mod size;
+
 use super::accuracy::{stands, unconverged, vanishes};
 use super::error_bars::{Companion, Companions};
 use super::orders::HIGHEST;
 use super::states::States;
-use super::verify::residual_order;
+use super::verify::{DEFECTS, residual_order_told};
 use super::{Progress, Setup};
 use crate::error::{Error, Result};
 use crate::measured::Measured;
@@ -103,7 +105,8 @@ impl AmplitudesReport {
         for choice in choices {
             WaveVector::either_way(choice.k)?;
         }
-        let steps = choices.len() + order + 3;
+        size::check(choices.len(), order)?;
+        let steps = choices.len() + order + 2 + DEFECTS;
         progress.begin(steps);
         let base = setup.base(None)?;
         let problem = &setup.problem(&base)?;
@@ -113,11 +116,10 @@ impl AmplitudesReport {
             expansion.advance()?;
             progress.advance(1);
         }
-        let defect = residual_order(&expansion);
+        let defect = residual_order_told(&expansion, progress);
         let residual_order = defect
             .slope
             .ok_or_else(|| format!("rounding hides it, most of all in {}", defect.row));
-        progress.advance(1);
         let distances = expansion.distances();
         let multipliers = expansion.multipliers.clone();
         let slow_rate = slow_rate(problem, &pairs);

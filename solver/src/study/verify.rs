@@ -19,7 +19,7 @@ use std::fmt;
 
 pub use adjointness::duality;
 pub use forms::second_route;
-pub use order::{ResidualOrder, residual_order};
+pub use order::{DEFECTS, ResidualOrder, residual_order, residual_order_told};
 
 /// What became of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,6 +5,7 @@ use super::{Critical, Quantity};
 use crate::error::{Error, Result};
 use crate::model::C64;
 use crate::wavevector::WaveVector;
+use crate::words::brief;
 
 /// Which mode a question is about.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,9 +81,20 @@ impl Question {
         let [from, to] = request.between;
         let span = (to - from).abs();
         if !(LEAST_SPAN..f64::INFINITY).contains(&span) {
+            let reason = if !from.is_finite() || !to.is_finite() {
+                "--from and --to accept finite numbers".to_owned()
+            } else if span > LEAST_SPAN {
+                format!("the difference has to be a number, below {:.1e}", f64::MAX)
+            } else if from == to {
+                "give two different numbers, --from and --to".to_owned()
+            } else {
+                format!("the difference has to be at least {LEAST_SPAN:e}")
+            };
             return Err(Error::input(format!(
-                "`{}` cannot vary from {from} to {to}: give two different numbers, --from and --to",
-                request.vary
+                "`{}` cannot vary from {} to {}: {reason}",
+                request.vary,
+                brief(from),
+                brief(to)
             )));
         }
         for value in [from, to] {

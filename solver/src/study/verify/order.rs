@@ -13,6 +13,7 @@ use crate::model::{BalanceId, C64, End, Id, Jet, Kernel, ResidualId, WithRoundin
 use crate::problem::{Problem, Profile};
 use crate::series::Monomial;
 use crate::space::{Block, Points};
+use crate::study::{Progress, Silent};
 use crate::wavevector::WaveVector;
 use crate::weakly::{Expansion, LandauPoint, Mode, power};
 use integrals::OnIntegrals;
@@ -88,18 +89,30 @@ struct Defect {
     rounding: f64,
 }
 
+/// Amplitudes at which [`residual_order_told`] looks at the defect.
+pub const DEFECTS: usize = STEPS + 2;
+
 /// The order at which the defect of the whole expansion falls.
 pub fn residual_order(expansion: &Expansion) -> ResidualOrder {
+    residual_order_told(expansion, &Silent)
+}
+
+/// The same; each of the [`DEFECTS`] amplitudes is a step of `progress`.
+pub fn residual_order_told(expansion: &Expansion, progress: &dyn Progress) -> ResidualOrder {
     let series = Series::new(expansion);
+    let defects = |amplitude: f64| {
+        let defects = series.defects(amplitude);
+        progress.advance(1);
+        defects
+    };
     let start = START / series.reach();
     let amplitudes: Vec<f64> = (0..STEPS).map(|i| start / RATIO.powi(i as i32)).collect();
-    let measured: Vec<Vec<Defect>> = amplitudes.iter().map(|&a| series.defects(a)).collect();
+    let measured: Vec<Vec<Defect>> = amplitudes.iter().map(|&a| defects(a)).collect();
     // What the discretisation leaves at A = 0, and for each unit of A (from an amplitude so small that no power
     // of it counts).
-    let rest = series.defects(0.0);
+    let rest = defects(0.0);
     let tiny = start * 1e-5;
-    let linear: Vec<f64> = series
-        .defects(tiny)
+    let linear: Vec<f64> = defects(tiny)
         .iter()
         .zip(&rest)
         .map(|(d, r)| (d.value - 2.0 * r.value).max(0.0) / tiny)
