@@ -4,6 +4,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use landau_codegen::build::{generate_module, read_sources};
 use landau_solver::Model;
 use landau_solver::study::Setup;
+use landau_solver::wavevector::WaveVector;
 use landau_solver::weakly::{Expansion, Selection, point, select, warm_point};
 use std::path::Path;
 use std::sync::Arc;
@@ -12,11 +13,15 @@ fn warm(criterion: &mut Criterion, name: &str, model: &Arc<dyn Model>) {
     let setup = Setup::new(model.clone(), 50).expect("M");
     let base = setup.base(None).expect("a base state");
     let problem = setup.problem(&base).expect("a problem");
-    let near = point(&problem, 0.16, Selection::Leading)
+    let near = point(&problem, WaveVector::along_x(0.16), Selection::Leading)
         .expect("a point")
         .pair;
     criterion.bench_function(name, |b| {
-        b.iter(|| warm_point(&problem, 0.161, &near).expect("a point").c2)
+        b.iter(|| {
+            warm_point(&problem, WaveVector::along_x(0.161), &near)
+                .expect("a point")
+                .c2
+        })
     });
 }
 
@@ -25,7 +30,8 @@ fn series(criterion: &mut Criterion, model: &Arc<dyn Model>) {
     let setup = Setup::new(model.clone(), 50).expect("M");
     let base = setup.base(None).expect("a base state");
     let problem = setup.problem(&base).expect("a problem");
-    let pair = |k: f64| select(&problem, k, Selection::Leading).expect("a mode");
+    let pair =
+        |k: f64| select(&problem, WaveVector::along_x(k), Selection::Leading).expect("a mode");
     let cases = [
         ("order 3 by series", vec![pair(0.16)], 3),
         ("order 5", vec![pair(0.16)], 5),

@@ -49,6 +49,7 @@ pub(super) fn model(
     let base = base(&tree.base, fields.len(), ends, names, mistakes);
     let boundary = walls(&tree.boundary, ends, names, mistakes);
     let mean: Vec<Closure> = each(&tree.mean, names, mistakes, mean);
+    different_closures(&mean, mistakes);
     let amplitude = match &tree.amplitude {
         Some(item) => {
             let amplitude = amplitude::amplitude(item, interval.as_ref(), names);
@@ -420,6 +421,28 @@ fn conditions(
                     conditions(&branches[branch].1, end, &guard, names, mistakes, list);
                 }
             }
+        }
+    }
+}
+
+/// Refuses a gauge or an integral that is named twice.
+fn different_closures(closures: &[Closure], mistakes: &mut Vec<Diagnostic>) {
+    for (index, closure) in closures.iter().enumerate() {
+        let repeats = |before: &Closure| match (before, closure) {
+            (Closure::Gauge { field: a, .. }, Closure::Gauge { field: b, .. }) => a == b,
+            (Closure::Conserved { integrand: a, .. }, Closure::Conserved { integrand: b, .. }) => {
+                a == b
+            }
+            _ => false,
+        };
+        if closures[..index].iter().any(repeats)
+            && let Closure::Gauge { location, .. } | Closure::Conserved { location, .. } = closure
+        {
+            mistakes.push(Diagnostic::new(
+                location.clone(),
+                "the block `mean` names this twice",
+                "one of them alone",
+            ));
         }
     }
 }

@@ -35,6 +35,7 @@ impl Reader<'_> {
         let keyword = self.name(input, "`balance`, `fields`, `let` or another item")?;
         match keyword.text.as_str() {
             "model" => {
+                once(&keyword, tree.name.is_some())?;
                 tree.name = Some(self.name(input, "the name of the model")?);
                 tree.title = self.doc(input);
                 self.punctuation(input, ";")
@@ -70,6 +71,7 @@ impl Reader<'_> {
                 self.mean(input).map(|item| tree.mean.push(item))
             }),
             "amplitude" => self.block(input, |input| {
+                once(&keyword, tree.amplitude.is_some())?;
                 tree.amplitude = Some(self.amplitude(input)?);
                 Ok(())
             }),
@@ -77,6 +79,7 @@ impl Reader<'_> {
                 self.output(input).map(|item| tree.outputs.push(item))
             }),
             "typical" => {
+                once(&keyword, tree.typical.is_some())?;
                 let content = self.braced(input)?;
                 tree.typical = Some(self.typical(&content)?);
                 self.finished(&content, "`}`")
@@ -345,6 +348,18 @@ impl Reader<'_> {
             location,
         })
     }
+}
+
+/// Refuses a second statement of a kind that gives one thing.
+fn once(keyword: &Name, is_given: bool) -> Parsed<()> {
+    if !is_given {
+        return Ok(());
+    }
+    Err(Diagnostic::new(
+        keyword.location.clone(),
+        format!("`{}` is given twice", keyword.text),
+        "one of them alone",
+    ))
 }
 
 pub(super) fn unknown_item(location: &Location, name: &str, items: &[&str]) -> Diagnostic {

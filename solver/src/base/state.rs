@@ -1,4 +1,4 @@
-//! A base state: Chebyshev series of the solved fields, closed forms of the others.
+//! A base state: Chebyshev series of the solved fields, closed forms of the remaining ones.
 
 use super::check::spec_line;
 use crate::error::{Error, Result};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// X⁰(y), evaluated to any derivative that kernels ask for.
 #[derive(Clone)]
 pub struct BaseState {
-    /// What it is a state of.
+    /// The model that it is a base state of.
     pub model: Arc<dyn Model>,
     /// Values of the parameters, automatic ones determined.
     pub parameters: Parameters,
@@ -24,11 +24,11 @@ pub struct BaseState {
     pub space: Space,
     /// Degree of the series (0 where the base is in closed form).
     pub degree: usize,
-    /// Of each solved field; of a number its value.
+    /// Chebyshev series of each solved field; for an unknown number, its value.
     pub series: Table<SolvedId, Series>,
     /// Largest residual of the discretised base problem, relative to its terms.
     pub residual: f64,
-    /// What of its balances and conditions it meets but nearly, in words.
+    /// Balances and conditions that it meets to a few digits only, each as a note in words.
     pub notes: Vec<String>,
 }
 
@@ -39,10 +39,10 @@ impl fmt::Debug for BaseState {
     }
 }
 
-/// The interval at these parameters.
+/// The interval at the given parameters, or the point of a model without a cross-stream coordinate.
 ///
 /// # Errors
-/// One that is empty.
+/// The interval is empty.
 pub(super) fn space(
     model: &dyn Model,
     parameters: &Parameters,
@@ -79,12 +79,13 @@ impl BaseState {
         }
     }
 
-    /// What the kernels are about.
+    /// The names, fields, balances and terms that the kernels' outputs stand for.
     pub fn structure(&self) -> &Structure {
         self.model.structure()
     }
 
-    /// The point state that kernels read at a place; `q` enters the amplitude alone.
+    /// The point state that kernels read at a place: a vector with the layout of [`Structure::state`]. `q` is read by the
+    /// block `amplitude` alone.
     pub fn at(&self, place: Place, q: WaveVector) -> Vec<f64> {
         let structure = self.structure();
         let (y, values) = (self.space.y(place), &self.parameters.values);

@@ -167,7 +167,7 @@ fn check_folder(path: &Path, target: &Path) -> Result<()> {
 pub fn read_bounded(path: &Path, limit: u64) -> Result<Vec<u8>> {
     let wrong = |what: &str| Error::input(format!("{} cannot be read: {what}", shown_path(path)));
     let failure = |error: std::io::Error| wrong(&error.to_string());
-    // Looked at before it is opened, for to open a pipe is to wait for its other end.
+    // Look at the file before opening it: opening a pipe waits for a process at its far end.
     if !fs::metadata(path).map_err(failure)?.is_file() {
         return Err(wrong("it is no plain file"));
     }
@@ -205,7 +205,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let target = destination(path)?;
     let failure =
         |e: std::io::Error| Error::input(format!("{} cannot be written: {e}", shown_path(path)));
-    // A temporary file of its own is removed where something fails on the way.
+    // The temporary file is removed where something fails on the way.
     let permissions = fs::metadata(&target).ok().map(|info| info.permissions());
     let begun = part::begin(folder_of(&target), |builder| {
         #[cfg(unix)]
@@ -274,22 +274,22 @@ mod tests {
         }
     }
 
-    /// Only what is sealed is replaced, and what has no name of its own in a command never through a link.
+    /// Only sealed files are replaced, and a file that no command names is never replaced through a link.
     #[test]
     fn what_may_be_replaced() {
         let folder = tempfile::tempdir().expect("a folder");
         let path = |name: &str| folder.path().join(name);
-        let (known, foreign, link) = (path("known"), path("foreign"), path("link"));
-        write_whole(&known, &sealed(format!("x {BLANK} y").into_bytes())).expect("written");
+        let (ours, foreign, link) = (path("ours"), path("foreign"), path("link"));
+        write_whole(&ours, &sealed(format!("x {BLANK} y").into_bytes())).expect("written");
         write_whole(&foreign, b"x").expect("written");
-        symlink(&known, &link).expect("a link");
+        symlink(&ours, &link).expect("a link");
         let (recognised, anything) = (Overwrite::Recognised, Overwrite::Anything);
         assert!(check_replaceable(&path("new"), recognised).is_ok());
-        assert!(check_replaceable(&known, recognised).is_ok());
+        assert!(check_replaceable(&ours, recognised).is_ok());
         assert!(check_replaceable(&link, recognised).is_ok());
         assert!(check_replaceable(&foreign, recognised).is_err());
         assert!(check_replaceable(&foreign, anything).is_ok());
-        assert!(check_companion(&known, recognised).is_ok());
+        assert!(check_companion(&ours, recognised).is_ok());
         assert!(check_companion(&foreign, recognised).is_err());
         assert!(check_companion(&foreign, anything).is_ok());
         assert!(check_companion(&link, anything).is_err());

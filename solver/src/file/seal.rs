@@ -1,7 +1,7 @@
 //! A seal: a hash of a file inside the file, by which a file that Landau wrote and nobody changed is recognised.
 //!
 //! A format puts [`BLANK`] where it has room for words: a comment, an attribute, a chunk of text. [`sealed`] then writes
-//! the hash of all other bytes in place of the zeros.
+//! the hash of the remaining bytes in place of the zeros.
 
 use super::hash;
 

@@ -1,6 +1,6 @@
 //! Sets to zero the fields that take no part in a mode.
 //!
-//! A wave of one velocity component has no other component, and every product with these vanishes. A force that is a
+//! A wave of one velocity component leaves the remaining ones at zero, and every product with these vanishes. A force that is a
 //! gradient makes a pressure and no flow. A solved vector holds rounding noise in such fields; products of that noise
 //! would give a c2 that never converges.
 

@@ -219,8 +219,7 @@ impl Levels {
                 program.series[r].then(|| &before[self.slots[r] * length..][..length])
             };
             let base = |r: Register| &self.base[r * self.points..][..self.points];
-            let value = base(register);
-            // `target` holds the sum S over products of lower degrees.
+            // `target` holds S, the sum over products of lower degrees.
             match *step {
                 Step::Constant(_) | Step::Point(_) => {}
                 Step::Jet(jet) => self.fill(program, register, target, &|index| jets(jet, index)),
@@ -244,12 +243,12 @@ impl Levels {
                 // c = a/b: c_α = (S + a_α − c_0 b_α)/b_0
                 Step::Divide(a, b) => {
                     self.add(target, operand(a), 1.0);
-                    self.add_times(target, operand(b), -1.0, value);
+                    self.add_times(target, operand(b), -1.0, base(register));
                     self.divide(target, base(b));
                 }
                 // c = a^r: c_α = (S + r c_0 a_α)/a_0
                 Step::Power(a, exponent) => {
-                    self.add_times(target, operand(a), exponent, value);
+                    self.add_times(target, operand(a), exponent, base(register));
                     self.divide(target, base(a));
                 }
                 // f with E f = sign · w · E a: f_α = S + sign · w_0 a_α

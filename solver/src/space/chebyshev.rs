@@ -93,7 +93,7 @@ impl Grid {
             .collect()
     }
 
-    /// The matrix of d^order/dξ^order at this grid's own nodes.
+    /// The matrix of d^order/dξ^order at the nodes of this grid.
     fn differentiation(&self, order: usize) -> Mat<f64> {
         let n = self.len();
         let weights = self.weights();
@@ -120,7 +120,7 @@ impl Grid {
         previous
     }
 
-    /// Interpolation from this grid to other points.
+    /// Interpolation from the nodes of this grid to any points.
     fn interpolation(&self, to: &[f64]) -> Mat<f64> {
         let weights = self.weights();
         let mut matrix = Mat::<f64>::zeros(to.len(), self.len());

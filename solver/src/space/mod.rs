@@ -1,7 +1,7 @@
 //! The cross-stream direction, as base states and perturbations share it: an interval, or a single point.
 //!
 //! Places, derivatives and integrals are in y. The variable ξ ∈ [−1, 1] of the Chebyshev polynomials, and the
-//! coordinate η in which a thin layer of a base state is wide, are known in this module alone.
+//! coordinate η in which a thin layer of a base state is wide, occur in this module alone.
 
 mod chebyshev;
 mod derivative;

@@ -208,7 +208,7 @@ mod tests {
         let c = |re: f64| C64::new(re, 0.0);
         assert!(scout.leads(c(0.25), &spectrum(&[0.25, -0.5, -2.0]), 4));
         assert!(!scout.leads(c(0.2), &spectrum(&[0.2, -0.5, -2.0]), 4));
-        // Its own shift between the two collocations counts too, and nothing is accepted outside of the gauges.
+        // The shift of the first mode between the two collocations counts too, and nothing is accepted outside of the gauges.
         assert!(!scout.leads(c(0.25), &spectrum(&[1.1, -0.5, -2.0]), 4));
         assert!(!scout.leads(c(0.25), &spectrum(&[0.25, -0.5, -2.0]), 10));
     }

@@ -150,7 +150,7 @@ fn third_order(
     };
     let factor = |mode: &Mode| Factor::new(problem, mode.clone(), weight);
     let n2 = |times: f64, a: &Factor, b: &Factor| product(problem, &[a, b], times);
-    let n3 = |times: f64, a: &Factor, b: &Factor, c: &Factor| product(problem, &[a, b, c], times);
+    let n3 = |times: f64, factors: [&Factor; 3]| product(problem, &factors, times);
 
     // [2 a0 M0 − L_0] X[0;2] = 2 N2(X, X̄), and for each closure ∫ D1 X[0;2] dy = −2 ∫ D2(X, X̄) dy
     let forcing = RightSide {
@@ -168,7 +168,7 @@ fn third_order(
     let g13 = [
         n2(2.0, &x, &x02),
         n2(2.0, &x_bar, &x22),
-        n3(3.0, &x, &x, &x_bar),
+        n3(3.0, [&x, &x, &x_bar]),
     ];
     if !g13.iter().all(|term| norm(term).is_finite()) {
         return Err(out_of_range());

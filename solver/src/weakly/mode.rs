@@ -10,7 +10,7 @@ use crate::wavevector::WaveVector;
 pub struct Mode {
     /// Wavenumber: ∂x is multiplication by i q.
     pub q: WaveVector,
-    /// X_α, all fields after each other; by the layout of the direct problem.
+    /// X_α: the values of one field after another, by the layout of the direct problem.
     pub values: Profile,
     /// The coefficient of the same monomial in ∂t X, with the layout of `values`.
     pub rate: Profile,
