@@ -450,7 +450,7 @@ impl Progress for Steps {
     }
 }
 
-/// Two modes, three orders beyond the first and the next two, the defect, the equilibria, and the companions that a model
+/// Two modes, three orders beyond the first and the next two, thirty defects, the equilibria, and the companions that a model
 /// without a cross-stream coordinate has: three draws of noise.
 #[test]
 fn every_step_is_told() {
@@ -459,7 +459,7 @@ fn every_step_is_told() {
     let modes = [1.0, 0.7].map(|k| ModeChoice { k, near: None });
     AmplitudesReport::compute(&setup, &modes, 4, &steps).expect("the equations");
     let counts = [&steps.announced, &steps.done, &steps.ended].map(|n| n.load(Ordering::Relaxed));
-    let expected = 2 + 3 + 2 + 1 + 1 + 3;
+    let expected = 2 + 3 + 2 + 30 + 1 + 3;
     assert_eq!(counts, [expected, expected, 1]);
 }
 

@@ -116,7 +116,7 @@ impl Shard {
     }
 
     fn read(path: &Path) -> Result<Self> {
-        let bad = |why: String| Error::input(format!("{}: {why}", shown_path(&path)));
+        let bad = |why: String| Error::input(format!("{}: {why}", shown_path(path)));
         let text = read_text(path, SHARE_LIMIT)?;
         // Read by itself, for another format has other keys.
         let format = serde_json::from_str::<Format>(&text).map(|f| f.landau_shard);
@@ -202,16 +202,16 @@ pub fn merge(paths: &[PathBuf]) -> Result<Table> {
         if let Some(difference) = difference(&first, &shard) {
             return Err(Error::input(format!(
                 "{} and {} are shares of different sweeps: {difference}",
-                shown_path(&first_path),
-                shown_path(&path),
+                shown_path(first_path),
+                shown_path(path),
             )));
         }
         for (chunk, rows_of_chunk) in shard.rows {
             if let Some((_, first_holder)) = rows.get(&chunk) {
                 return Err(Error::input(format!(
                     "{} and {} overlap: both hold part {} of {}",
-                    shown_path(&first_holder),
-                    shown_path(&path),
+                    shown_path(first_holder),
+                    shown_path(path),
                     chunk + 1,
                     first.chunks
                 )));
