@@ -344,10 +344,7 @@ fn questions_without_meaning() {
             "--vary r --from 0.2 --to 0.2 --k 1",
             "two different numbers",
         ),
-        (
-            "--vary r --from nan --to 0.2 --k 1",
-            "two different numbers",
-        ),
+        ("--vary r --from nan --to 0.2 --k 1", "finite numbers"),
         (
             "--vary r --from 0.2 --to inf --k 1",
             "two different numbers",

@@ -79,6 +79,11 @@ impl BaseState {
         }
     }
 
+    /// Whether the spec gives all of it in closed form, so that nothing was solved for.
+    pub fn is_closed(&self) -> bool {
+        self.series.is_empty()
+    }
+
     /// The names, fields, balances and terms that the kernels' outputs stand for.
     pub fn structure(&self) -> &Structure {
         self.model.structure()
