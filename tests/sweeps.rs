@@ -132,7 +132,7 @@ fn a_journal_is_not_believed() {
         let again = run(&out, &[]);
         assert!(again.status.success(), "{}", said(&again));
         assert!(
-            said(&again).contains("1 lines of its journal do not fit"),
+            said(&again).contains("1 line of its journal does not fit"),
             "{}",
             said(&again)
         );
