@@ -345,10 +345,7 @@ fn questions_without_meaning() {
             "two different numbers",
         ),
         ("--vary r --from nan --to 0.2 --k 1", "finite numbers"),
-        (
-            "--vary r --from 0.2 --to inf --k 1",
-            "two different numbers",
-        ),
+        ("--vary r --from 0.2 --to inf --k 1", "finite numbers"),
         ("--vary r --from 0.2 --to 0.9 --k 0", "k = 0"),
         ("--vary r --from 0.2 --to 0.9 --k nan", "k = NaN"),
         ("--vary r --from 0.2 --to 0.9 --minimize k=1.3:0.8", "A < B"),
