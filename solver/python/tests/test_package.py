@@ -244,7 +244,9 @@ def test_a_share_that_was_killed_is_computed_again(tmp_path):
 
     bed = Model("vibrated_bed")
     axes = [("k", list(np.linspace(0.05, 0.17, 200)))]
-    assignment = (["H=40.0"], 40, axes, None, None, False, [])
+    assignment = {
+        "set": ["H=40.0"], "resolution": 40, "axes": axes, "k": None, "near": None, "follow": False, "columns": [],
+    }
     file = tmp_path / "assignment"
     file.write_bytes(pickles.dumps((bed, assignment)))
     plain = tmp_path / "plain.csv"
