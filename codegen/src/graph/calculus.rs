@@ -269,16 +269,20 @@ mod tests {
         }
     }
 
+    /// A law of one field, none of its slopes taken.
+    fn atom() -> LawAtom {
+        LawAtom {
+            law: LawId(0),
+            index: Table::filled(1, 0),
+            y: 0,
+        }
+    }
+
     /// A law at the base state does not depend on derivatives of the base fields beyond its order.
     #[test]
     fn laws_of_the_base_state() {
         let mut graph = Graph::new();
-        let law = LawAtom {
-            law: LawId(0),
-            index: Table::filled(1, 0),
-            y: 0,
-        };
-        let law = graph.base_law(law);
+        let law = graph.base_law(atom());
         let by_slope = graph.differentiate(law, Variable::Base(FieldId(0), 1));
         assert!(graph.is_zero(by_slope));
     }
@@ -288,12 +292,7 @@ mod tests {
     #[should_panic(expected = "a law is not opened")]
     fn laws_have_to_be_opened() {
         let mut graph = Graph::new();
-        let law = LawAtom {
-            law: LawId(0),
-            index: Table::filled(1, 0),
-            y: 0,
-        };
-        let law = graph.base_law(law);
+        let law = graph.base_law(atom());
         graph.differentiate(law, Variable::Base(FieldId(0), 0));
     }
 
@@ -302,12 +301,7 @@ mod tests {
     #[should_panic(expected = "a law is not opened")]
     fn laws_of_the_full_state_have_to_be_opened() {
         let mut graph = Graph::new();
-        let law = LawAtom {
-            law: LawId(0),
-            index: Table::filled(1, 0),
-            y: 0,
-        };
-        let law = graph.state_law(law);
+        let law = graph.state_law(atom());
         graph.differentiate(law, Variable::Base(FieldId(0), 0));
     }
 

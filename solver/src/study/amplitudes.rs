@@ -94,18 +94,7 @@ impl AmplitudesReport {
         order: usize,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        if choices.is_empty() {
-            return Err(Error::input("name at least one mode with --mode k=K"));
-        }
-        if !(2..=HIGHEST).contains(&order) {
-            return Err(Error::input(format!(
-                "--order {order} is out of range: it accepts 2 to {HIGHEST}"
-            )));
-        }
-        for choice in choices {
-            WaveVector::either_way(choice.k)?;
-        }
-        size::check(choices.len(), order)?;
+        check(choices, order)?;
         let steps = choices.len() + order + 2 + DEFECTS;
         progress.begin(steps);
         let base = setup.base(None)?;
@@ -147,16 +136,6 @@ impl AmplitudesReport {
         let states = States::of(&system, &errors, &next, &q);
         progress.advance(1);
         progress.end();
-        let coefficient = |(term, error): (&weakly::Term, &f64)| Coefficient {
-            monomial: term.monomial.clone(),
-            g: Measured::new(term.g, *error),
-        };
-        let equations: Vec<Vec<Coefficient>> = system
-            .equations
-            .iter()
-            .zip(&errors)
-            .map(|(terms, errors)| terms.iter().zip(errors).map(coefficient).collect())
-            .collect();
         let structure = setup.model.structure();
         Ok(AmplitudesReport {
             model: structure.name.clone(),
@@ -168,7 +147,7 @@ impl AmplitudesReport {
             modes,
             normalization: structure.amplitude.description.clone(),
             equilibria: states,
-            equations,
+            equations: equations(&system, &errors),
             distances,
             slow_rate,
             residual_order,
@@ -243,6 +222,34 @@ pub fn small_divisors(distances: &[Distance], slow_rate: f64) -> Vec<&Distance> 
     }
     small.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     small
+}
+
+/// Refuses a question that has no answer or takes too long, before any work.
+fn check(choices: &[ModeChoice], order: usize) -> Result<()> {
+    if choices.is_empty() {
+        return Err(Error::input("name at least one mode with --mode k=K"));
+    }
+    if !(2..=HIGHEST).contains(&order) {
+        return Err(Error::input(format!(
+            "--order {order} is out of range: it accepts 2 to {HIGHEST}"
+        )));
+    }
+    for choice in choices {
+        WaveVector::either_way(choice.k)?;
+    }
+    size::check(choices.len(), order)
+}
+
+/// The terms of the equations with their absolute errors, by equation.
+fn equations(system: &AmplitudeSystem, errors: &[Vec<f64>]) -> Vec<Vec<Coefficient>> {
+    let coefficient = |(term, error): (&weakly::Term, &f64)| Coefficient {
+        monomial: term.monomial.clone(),
+        g: Measured::new(term.g, *error),
+    };
+    let equations = system.equations.iter().zip(errors);
+    equations
+        .map(|(terms, errors)| terms.iter().zip(errors).map(coefficient).collect())
+        .collect()
 }
 
 /// The modes that are asked for; one at −k goes with the one at k that has been named before it.

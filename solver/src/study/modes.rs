@@ -52,9 +52,10 @@ impl Modes {
         let problem = point.problem.as_ref();
         let places = problem.space().evenly(HEIGHTS);
         let expansion = Expansion::to(&point.problem, vec![point.pair.clone()], 3)?;
-        let known = expansion.coefficients().into_iter();
-        let own = known.filter(|(monomial, _)| monomial.z >= monomial.conj);
-        let mut profiles: Vec<ModeProfile> = own
+        // One of each pair of conjugates.
+        let coefficients = expansion.coefficients().into_iter();
+        let mut profiles: Vec<ModeProfile> = coefficients
+            .filter(|(monomial, _)| monomial.z >= monomial.conj)
             .map(|(monomial, mode)| {
                 let harmonic: f64 = monomial.differences().sum();
                 let name = format!("X[{harmonic};{}]", monomial.degree());

@@ -5,14 +5,14 @@ mod forms;
 mod order;
 
 use super::Setup;
-use super::accuracy::{SINGULAR, accuracy, resonance, slow_rate};
+use super::accuracy::{Accuracy, SINGULAR, accuracy, resonance, slow_rate};
 use super::orders::check_order;
 use super::quadrature::{adjoint_mode, second_landau};
 use crate::error::{Error, Result};
 use crate::problem::{Problem, Profile};
 use crate::series::Monomial;
 use crate::wavevector::WaveVector;
-use crate::weakly::{self, Expansion, LEFT_OVER, LandauPoint, Selection};
+use crate::weakly::{self, Expansion, LEFT_OVER, LandauPoint, Multiplier, Selection};
 use crate::words;
 use serde_json::{Value, json};
 use std::fmt;
@@ -306,12 +306,21 @@ fn landau_size(point: &LandauPoint) -> f64 {
     point.size().max(uncancelled).max(f64::MIN_POSITIVE)
 }
 
-/// Part 5: M against 3M/2, tails, distances from singularity, multipliers.
+/// Part 5: errors of c0 and c2, tails, distances from singularity, multipliers.
 fn convergence(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
-    let mut checks = Vec::new();
     let error = accuracy(setup, point)?;
-    let m = setup.effective_resolution();
-    let detail = match m {
+    let mut checks = errors(setup, point, &error);
+    if setup.effective_resolution().is_some() {
+        checks.extend(tails(setup, point));
+    }
+    checks.extend(distances(point, error.c0)?);
+    checks.extend(point.multipliers.iter().map(multiplier));
+    Ok(checks)
+}
+
+/// Errors of c0 and c2, relative to their sizes.
+fn errors(setup: &Setup, point: &LandauPoint, error: &Accuracy) -> Vec<Check> {
+    let detail = match setup.effective_resolution() {
         None => "rounding, and one route against the other".to_owned(),
         Some(m) => format!(
             "M = {m} against {} and {}, and one route against the other",
@@ -320,37 +329,32 @@ fn convergence(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
         ),
     };
     let growth = point.c0.norm().max(1e-3 * point.pair.scale);
-    checks.push(Check::below(
-        5,
-        "error of c0, relative",
-        error.c0 / growth,
-        1e-3,
-        detail.clone(),
-    ));
-    checks.push(Check::below(
-        5,
-        "error of c2, relative",
-        error.c2 / landau_size(point),
-        1e-3,
-        detail,
-    ));
-    let solved = !setup.model.structure().base.solved.is_empty();
-    if m.is_some() && solved {
+    let [c0, c2] = [error.c0 / growth, error.c2 / landau_size(point)];
+    vec![
+        Check::below(5, "error of c0, relative", c0, 1e-3, detail.clone()),
+        Check::below(5, "error of c2, relative", c2, 1e-3, detail),
+    ]
+}
+
+/// Last Chebyshev coefficients of the base state, where it was solved for, and of the modes.
+fn tails(setup: &Setup, point: &LandauPoint) -> Vec<Check> {
+    let mut checks = Vec::new();
+    if !setup.model.structure().base.solved.is_empty() {
         let base = &point.problem.base;
+        let degree = format!("degree {}", base.degree);
         checks.push(Check::below(
             5,
             "tail of the base state",
             base.tail(),
             1e-9,
-            format!("degree {}", base.degree),
+            degree,
         ));
     }
-    let modes = [
+    for (name, mode) in [
         ("X[0;2]", &point.mean),
         ("X[1;1]", &point.fundamental),
         ("X[2;2]", &point.second),
-    ];
-    for (name, mode) in modes.into_iter().filter(|_| m.is_some()) {
+    ] {
         checks.push(Check::below(
             5,
             format!("tail of {name}"),
@@ -359,48 +363,54 @@ fn convergence(setup: &Setup, point: &LandauPoint) -> Result<Vec<Check>> {
             "last Chebyshev coefficients over the largest",
         ));
     }
-    let resonance = resonance(point, error.c0)?;
+    checks
+}
+
+/// Distances of the problems at k = 0 and 2k from singularity; `c0_error` is the error of the eigenvalue.
+fn distances(point: &LandauPoint, c0_error: f64) -> Result<Vec<Check>> {
+    let resonance = resonance(point, c0_error)?;
     let scale = slow_rate(point);
-    let mut distance = |name: &str, value: f64, detail: &str| {
-        checks.push(match value <= SINGULAR * scale {
-            true => Check {
-                verdict: Verdict::Failed,
-                ..Check::report(5, name, value, format!("{detail}: as good as singular"))
-            },
-            false => Check::report(5, name, value, detail),
-        });
+    let check = |name: &str, value: f64, detail: &str| {
+        if value > SINGULAR * scale {
+            return Check::report(5, name, value, detail);
+        }
+        Check {
+            verdict: Verdict::Failed,
+            ..Check::report(5, name, value, format!("{detail}: as good as singular"))
+        }
     };
+    let mut checks = Vec::new();
     if resonance.mean_flow.value.is_finite() {
-        let detail = "distance of the k = 0 problem from singularity";
-        distance(
+        checks.push(check(
             "distance to mean-flow resonance",
             resonance.mean_flow.value,
-            detail,
-        );
+            "distance of the k = 0 problem from singularity",
+        ));
     }
-    let detail = "distance of the 2k problem from singularity";
-    distance(
+    checks.push(check(
         "distance to 2:1 resonance",
         resonance.second_harmonic.value,
-        detail,
-    );
-    for multiplier in &point.multipliers {
-        let name = format!(
-            "multiplier of {} at order {}",
-            multiplier.closure, multiplier.order
-        );
-        checks.push(match multiplier.vanishes {
-            true => Check::below(
-                5,
-                name,
-                multiplier.relative,
-                LEFT_OVER,
-                "vanishes where the model keeps what it claims to conserve",
-            ),
-            false => Check::report(5, name, multiplier.relative, "relative to the forcing"),
-        });
-    }
+        "distance of the 2k problem from singularity",
+    ));
     Ok(checks)
+}
+
+/// A multiplier: it vanishes, or is a result.
+fn multiplier(multiplier: &Multiplier) -> Check {
+    let name = format!(
+        "multiplier of {} at order {}",
+        multiplier.closure, multiplier.order
+    );
+    if !multiplier.vanishes {
+        return Check::report(5, name, multiplier.relative, "relative to the forcing");
+    }
+    Check::below(
+        5,
+        name,
+        multiplier.relative,
+        LEFT_OVER,
+        "vanishes where the model keeps what it claims to conserve",
+    )
 }
 
 /// Size of the last Chebyshev coefficients of the worst field.

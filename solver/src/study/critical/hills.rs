@@ -163,19 +163,15 @@ impl<'s> Hills<'s> {
             };
             let rise = 0.5 * (mode.along_x.re.abs() * gaps.x + mode.along_k.re.abs() * gaps.k);
             let bound = mode.c.re + rise;
-            let rises_on =
-                |next: Option<usize>, of: fn(&Slopes) -> C64, values: &[f64], at: usize| {
-                    let Some(next) = next else { return false };
-                    let neighbour = if std::ptr::eq(values, &*self.x) {
-                        node(next, j)
-                    } else {
-                        node(i, next)
-                    };
-                    rises_on(mode, &neighbour.modes, of, values[next] - values[at])
-                };
-            let candidate = bound > LEADS * unit
-                && !rises_on(next_x, |mode| mode.along_x, &self.x, i)
-                && !rises_on(next_k, |mode| mode.along_k, &self.k, j);
+            let rises_on_x = next_x.is_some_and(|next| {
+                let gap = self.x[next] - self.x[i];
+                rises_on(mode, &node(next, j).modes, |mode| mode.along_x, gap)
+            });
+            let rises_on_k = next_k.is_some_and(|next| {
+                let gap = self.k[next] - self.k[j];
+                rises_on(mode, &node(i, next).modes, |mode| mode.along_k, gap)
+            });
+            let candidate = bound > LEADS * unit && !rises_on_x && !rises_on_k;
             candidate.then_some(Foot {
                 place: Place {
                     x: self.x[i],

@@ -110,15 +110,15 @@ pub fn residual_order_told(expansion: &Expansion, progress: &dyn Progress) -> Re
     let measured: Vec<Vec<Defect>> = amplitudes.iter().map(|&a| defects(a)).collect();
     // What the discretisation leaves at A = 0, and for each unit of A (from an amplitude so small that no power
     // of it counts).
-    let rest = defects(0.0);
+    let at_zero = defects(0.0);
     let tiny = start * 1e-5;
     let linear: Vec<f64> = defects(tiny)
         .iter()
-        .zip(&rest)
-        .map(|(d, r)| (d.value - 2.0 * r.value).max(0.0) / tiny)
+        .zip(&at_zero)
+        .map(|(d, zero)| (d.value - 2.0 * zero.value).max(0.0) / tiny)
         .collect();
     let floor = |row: usize, i: usize| {
-        let left = rest[row].value + linear[row] * amplitudes[i] + series.closed(amplitudes[i]);
+        let left = at_zero[row].value + linear[row] * amplitudes[i] + series.closed(amplitudes[i]);
         (ABOVE_FLOOR * left).max(ABOVE_ROUNDING * measured[i][row].rounding)
     };
     // Over two steps.
@@ -137,7 +137,7 @@ pub fn residual_order_told(expansion: &Expansion, progress: &dyn Progress) -> Re
         let last = (3..STEPS).rev().filter(clear).find(settled)?;
         Some((slope(row, last), row, last))
     };
-    let judged = (0..rest.len()).filter_map(judged);
+    let judged = (0..at_zero.len()).filter_map(judged);
     let least = judged.min_by(|a, b| a.0.total_cmp(&b.0));
     match least {
         Some((slope, row, i)) => ResidualOrder {
@@ -147,7 +147,7 @@ pub fn residual_order_told(expansion: &Expansion, progress: &dyn Progress) -> Re
         },
         None => {
             let share = |row: &usize| measured[0][*row].value / floor(*row, 0).max(1e-300);
-            let nearest = (0..rest.len()).max_by(|a, b| share(a).total_cmp(&share(b)));
+            let nearest = (0..at_zero.len()).max_by(|a, b| share(a).total_cmp(&share(b)));
             ResidualOrder {
                 slope: None,
                 amplitude: amplitudes[0],
@@ -231,8 +231,10 @@ impl<'e> Series<'e> {
     fn new(expansion: &'e Expansion) -> Self {
         let problem = expansion.problem.as_ref();
         // One of each pair of conjugates.
-        let known = expansion.coefficients().into_iter();
-        let modes: Vec<(Monomial, Mode)> = known.filter(|(m, _)| m.z >= m.conj).collect();
+        let coefficients = expansion.coefficients().into_iter();
+        let modes: Vec<(Monomial, Mode)> = coefficients
+            .filter(|(monomial, _)| monomial.z >= monomial.conj)
+            .collect();
         let mut kinds: Vec<Points> = Vec::new();
         let groups = problem.direct.layout.groups().into_iter();
         let walls = problem.direct.walls.iter();
@@ -442,11 +444,11 @@ fn power_rate(monomial: &Monomial, z: &[C64], rates: &[C64]) -> C64 {
     let mut total = C64::new(0.0, 0.0);
     for (j, rate) in rates.iter().enumerate() {
         let one = Monomial::amplitude(n, j);
-        if let Some(rest) = monomial.over(&one) {
-            total += f64::from(monomial.z[j]) * power(&rest, z) * rate;
+        if let Some(quotient) = monomial.over(&one) {
+            total += f64::from(monomial.z[j]) * power(&quotient, z) * rate;
         }
-        if let Some(rest) = monomial.over(&one.conjugate()) {
-            total += f64::from(monomial.conj[j]) * power(&rest, z) * rate.conj();
+        if let Some(quotient) = monomial.over(&one.conjugate()) {
+            total += f64::from(monomial.conj[j]) * power(&quotient, z) * rate.conj();
         }
     }
     total

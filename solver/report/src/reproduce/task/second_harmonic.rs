@@ -139,9 +139,8 @@ impl Work for SecondHarmonic {
         for (index, pairs) in &answers {
             let (case, number) = (&self.case[*index], (index + 1) as f64);
             outcome.failures.extend(nothing_in(&case.label, pairs));
-            let found = places.iter().zip(pairs);
             let (mut coefficients, mut states) = (Vec::new(), Vec::new());
-            for (&k, pair) in found {
+            for (&k, pair) in places.iter().zip(pairs) {
                 let pair = pair.as_ref().ok();
                 coefficients.push(Coefficients::new(k, pair));
                 let states_here = pair.iter().flat_map(|pair| &pair.states);
